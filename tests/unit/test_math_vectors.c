@@ -1,0 +1,68 @@
+/* test_math_vectors.c - edges of the vector functions of hdrp_math.h.
+ * SPDX-License-Identifier: MIT */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "hdrp_math.h"
+
+static void expect_v3(hdrp_v3 v, float x, float y, float z)
+{
+    assert_true(v.x == x && v.y == y && v.z == z);
+}
+
+static void normalize_or_takes_the_fallback(void** state)
+{
+    (void)state;
+    hdrp_v3 fallback = hdrp_v3_make(0.0f, 1.0f, 0.0f);
+    float bad[] = {NAN, INFINITY, -INFINITY};
+    expect_v3(hdrp_normalize_or(hdrp_v3_splat(0.0f), fallback), 0.0f, 1.0f, 0.0f);
+    for (int i = 0; i < 3; ++i) {
+        expect_v3(hdrp_normalize_or(hdrp_v3_make(bad[i], 0.0f, 0.0f), fallback), 0.0f, 1.0f, 0.0f);
+        expect_v3(hdrp_normalize_or(hdrp_v3_make(1.0f, 0.0f, bad[i]), fallback), 0.0f, 1.0f, 0.0f);
+        expect_v3(hdrp_normalize_or(hdrp_v3_splat(bad[i]), fallback), 0.0f, 1.0f, 0.0f);
+    }
+}
+
+static void normalize_or_keeps_extreme_lengths(void** state)
+{
+    (void)state;
+    float lengths[] = {1.40129846e-45f, HDRP_FLT_MIN, HDRP_FLT_MAX};
+    for (int i = 0; i < 3; ++i) {
+        expect_v3(hdrp_normalize_or(hdrp_v3_make(0.0f, -lengths[i], 0.0f), hdrp_v3_splat(0.0f)),
+                  0.0f, -1.0f, 0.0f);
+    }
+}
+
+static void basis_is_exact_on_the_axes(void** state)
+{
+    (void)state;
+    hdrp_basis up = hdrp_basis_from_normal(hdrp_v3_make(0.0f, 0.0f, 1.0f));
+    hdrp_basis down = hdrp_basis_from_normal(hdrp_v3_make(0.0f, 0.0f, -1.0f));
+    expect_v3(hdrp_v3_cross(up.tangent, up.bitangent), 0.0f, 0.0f, 1.0f);
+    expect_v3(hdrp_v3_cross(down.tangent, down.bitangent), 0.0f, 0.0f, -1.0f);
+}
+
+static void limits_give_the_safe_bound_for_nan(void** state)
+{
+    (void)state;
+    assert_true(hdrp_max(NAN, 2.0f) == 2.0f);
+    assert_true(hdrp_min(NAN, 2.0f) == 2.0f);
+    assert_true(hdrp_clamp(NAN, 3.0f, 4.0f) == 3.0f);
+    assert_true(hdrp_saturate(NAN) == 0.0f);
+    assert_true(hdrp_saturate(INFINITY) == 1.0f);
+    assert_true(hdrp_lerp(5.0f, 7.0f, 1.0f) == 7.0f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(normalize_or_takes_the_fallback),
+        cmocka_unit_test(normalize_or_keeps_extreme_lengths),
+        cmocka_unit_test(basis_is_exact_on_the_axes),
+        cmocka_unit_test(limits_give_the_safe_bound_for_nan),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
