@@ -1,0 +1,54 @@
+# Front door. CMake does the work; each task has a build folder of its own under build/.
+.DEFAULT_GOAL := build
+.PHONY: build demo test check-all dist clean help
+
+JOBS ?= 2
+DEMO_ARGS ?=
+
+configure = cmake -S . -B build/$(1) -G Ninja $(2) >build/$(1).log 2>&1 || \
+            { cat build/$(1).log; exit 1; }
+compile = cmake --build build/$(1) --parallel $(JOBS)
+ctest = cd build/$(1) && ctest -j $(JOBS) --output-on-failure --no-tests=error
+
+build: ## build everything, run nothing
+	@mkdir -p build
+	@tools/install-deps --check test || true
+	@$(call configure,test,-DCMAKE_BUILD_TYPE=Release)
+	@$(call compile,test)
+
+demo: ## render the built-in scene into a picture; installs what is missing
+	@mkdir -p build
+	@tools/install-deps demo
+	@$(call configure,demo,-DCMAKE_BUILD_TYPE=Release -DHDRP_BUILD_TESTS=OFF)
+	@$(call compile,demo) --target hdrp_render
+	@build/demo/examples/render/hdrp_render $(DEMO_ARGS)
+
+test: ## run the whole test suite; installs what is missing
+	@mkdir -p build
+	@tools/install-deps test
+	@$(call configure,test,-DCMAKE_BUILD_TYPE=Release)
+	@$(call compile,test)
+	@$(call ctest,test)
+
+# The other builds leave out the tests that call compilers themselves: they would only repeat.
+check-all: test ## the test suite, then sanitizers, clang, every language standard everywhere
+	@$(call configure,sanitize,-DCMAKE_BUILD_TYPE=RelWithDebInfo -DHDRP_SANITIZE=ON \
+	    -DHDRP_TEST_COMPILERS=OFF)
+	@$(call compile,sanitize)
+	@$(call ctest,sanitize)
+	@$(call configure,clang,-DCMAKE_BUILD_TYPE=Release -DHDRP_TEST_COMPILERS=OFF \
+	    -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++)
+	@$(call compile,clang)
+	@$(call ctest,clang)
+	@$(call configure,full,-DHDRP_FULL_MATRIX=ON -DHDRP_BUILD_EXAMPLES=OFF)
+	@$(call ctest,full) -L compile
+
+dist: ## write one-file headers to dist/
+	@tools/install-deps dist
+	@python3 tools/amalgamate.py dist
+
+clean: ## remove what the targets above have made, pictures excepted
+	rm -rf build dist
+
+help: ## list the targets
+	@sed -n 's/^\([a-z-]*\):[^#]*## /\1 - /p' Makefile
