@@ -205,9 +205,11 @@ class Matrix:
 
     def shared_functions(self, header, define):
         """The formulas that a header has in a language which defines that macro."""
-        text = subprocess.run(["gcc", "-E", "-P", "-x", "c", f"-D{define}", f"-I{self.include}",
-                               str(header)], check=True, capture_output=True, text=True).stdout
-        present = set(re.findall(r"\b(hdrp_\w+)\([^()]*\)\s*\{", text))
+        command = ["gcc", "-E", "-P", "-x", "c", f"-D{define}", f"-I{self.include}", str(header)]
+        result = subprocess.run(command, capture_output=True, text=True)
+        if result.returncode:
+            sys.exit(f"FAILED {shlex.join(command)}\n{result.stderr}")
+        present = set(re.findall(r"\b(hdrp_\w+)\([^()]*\)\s*\{", result.stdout))
         found = [function for function in hdrp_api.functions(header)
                  if function.is_formula and function.name in present]
         self.called += len(found)
