@@ -62,10 +62,11 @@ class Calls:
         self.lines.append("}")
 
 
-def text(functions):
-    """The code for these functions: call_all(x, u) returns a sum over all results."""
+def text(functions, headers):
+    """The code for these functions: call_all(x, u) returns a sum over all results. The headers are
+    where their structs may come from."""
     structs = {}
-    for path in hdrp_api.headers():
+    for path in headers:
         structs.update(hdrp_api.structs(path))
     calls = Calls(structs)
     for index, function in enumerate(functions):

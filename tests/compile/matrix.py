@@ -271,7 +271,7 @@ class Matrix:
         define = "HDRP_HLSL" if language == "hlsl" else "GL_core_profile"
         for header in self.headers:
             functions = self.shared_functions(header, define)
-            body = calls.text(functions)
+            body = calls.text(functions, self.headers)
             jobs += [self.shader_job(language, stage, header.stem, [header.name], body, True)
                      for stage in stages]
             jobs.append(self.shader_job(language, stages[0], f"{header.stem}-twice",
@@ -288,7 +288,7 @@ class Matrix:
         for header in self.headers:
             functions = self.shared_functions(header, "__OPENCL_C_VERSION__=200")
             source = self.out / f"{header.stem}.cl"
-            text = (f'#include "{header.name}"\n{calls.text(functions)}'
+            text = (f'#include "{header.name}"\n{calls.text(functions, self.headers)}'
                     "kernel void all(global float* data)\n{\n"
                     "    data[0] = call_all(data[0], (uint)get_global_id(0));\n}\n")
             for standard in ("CL1.2", "CL2.0"):
@@ -314,7 +314,7 @@ class Matrix:
         for header in self.headers:
             functions = self.shared_functions(header, "HDRP_HLSL")
             source = self.out / f"{header.stem}.cu"
-            text = (f'{prelude}#include "{header.name}"\n{calls.text(functions)}'
+            text = (f'{prelude}#include "{header.name}"\n{calls.text(functions, self.headers)}'
                     f"__attribute__((global)) void all(float* data)\n{{\n"
                     "    data[0] = call_all(data[0], 1u);\n}\n")
             jobs.append(Job(f"{header.stem} as CUDA", {source: text},
