@@ -19,7 +19,7 @@ Where every formula comes from, by work. Generated from the docstrings by `tools
 
 
 def citations():
-    """(work or None, place in it, function) of every documented source; a field may cite several."""
+    """(work or None, place in it, function) of every source; a field may cite several works."""
     result = []
     for path in hdrp_api.headers():
         for function in hdrp_api.functions(path):

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""The compile matrix: matrix.py GROUP... --out FOLDER [--include FOLDER] [--full | --brief] [--jobs N]
+"""The compile matrix: matrix.py GROUP... --out FOLDER
+    [--include FOLDER] [--full | --brief] [--jobs N]
 
 Writes small sources for every hdrp*.h in the include folder (default: the headers of this tree) and
 compiles them; a new header is covered by existing. Groups:
@@ -256,7 +257,9 @@ class Matrix:
         if calls_all:
             metal, hlsl, glsl = (self.out / f"{name}.{s}"
                                  for s in ("metal", "out.hlsl", f"out.{stage}"))
-            version = ["--version", "310", "--es"] if language == "glsl_es" else ["--version", "450"]
+            version = ["--version", "450"]
+            if language == "glsl_es":
+                version = ["--version", "310", "--es"]
             commands += [
                 ["spirv-val", "--target-env", "vulkan1.0", module],
                 ["spirv-cross", module, "--msl", "--output", metal],

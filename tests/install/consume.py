@@ -73,7 +73,8 @@ class Consumer:
 
     def find_package(self):
         prefix = self.install()
-        self.build_project(f"-DCMAKE_PREFIX_PATH={prefix}", f"-DHDRP_WANTED_VERSION={self.version}")
+        self.build_project(f"-DCMAKE_PREFIX_PATH={prefix}",
+                           f"-DHDRP_WANTED_VERSION={self.version}")
         must_fail('requested version "99.0"', self.cmake, "-S", CONSUMER, "-B", self.out / "too_new",
                   f"-DCMAKE_PREFIX_PATH={prefix}", "-DHDRP_WANTED_VERSION=99.0")
 

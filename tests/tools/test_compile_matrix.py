@@ -81,11 +81,13 @@ class CompileMatrix(unittest.TestCase):
                                                "    return 1ul << 40;\n}"))
 
     def test_every_declared_function_links(self):
-        self.fails("link", "hdrp_zed_missing", HOST.format("HDRP_API int hdrp_zed_missing(float x);"))
+        self.fails("link", "hdrp_zed_missing",
+                   HOST.format("HDRP_API int hdrp_zed_missing(float x);"))
 
     def test_two_units_define_nothing_twice(self):
         self.fails("link", "multiple definition", HOST.format(
-            "int hdrp_zed_twice(float x);\nint hdrp_zed_twice(float x)\n{\n    return x > 1.0f;\n}"))
+            "int hdrp_zed_twice(float x);\nint hdrp_zed_twice(float x)\n{\n"
+            "    return x > 1.0f;\n}"))
 
     def test_words_of_shading_languages(self):
         for group, word in (("glsl", "sample"), ("hlsl", "linear"), ("glsl_es", "patch"),
