@@ -50,7 +50,7 @@ class Consumer:
         """One source, compiled as C and as C++."""
         for compiler, language, standard in (("gcc", "c", "c99"), ("g++", "c++", "c++11")):
             program = self.out / f"{name}_{compiler}"
-            run(compiler, "-x", language, f"-std={standard}", *STRICT, CONSUMER / "consumer.c",
+            run(compiler, f"-std={standard}", *STRICT, "-x", language, CONSUMER / "consumer.c",
                 "-x", "none", *flags, "-o", program)
             self.run_program(program)
 
@@ -75,7 +75,8 @@ class Consumer:
         prefix = self.install()
         self.build_project(f"-DCMAKE_PREFIX_PATH={prefix}",
                            f"-DHDRP_WANTED_VERSION={self.version}")
-        must_fail('requested version "99.0"', self.cmake, "-S", CONSUMER, "-B", self.out / "too_new",
+        must_fail('requested version "99.0"',
+                  self.cmake, "-S", CONSUMER, "-B", self.out / "too_new",
                   f"-DCMAKE_PREFIX_PATH={prefix}", "-DHDRP_WANTED_VERSION=99.0")
 
     def pkg_config(self):
