@@ -43,10 +43,9 @@ SYSTEM_HEADERS = {"<math.h>", "<stdint.h>", "<stddef.h>", "<string.h>", "<float.
 FORBIDDEN_CALLS = ("malloc calloc realloc free alloca printf fprintf puts abort exit assert "
                    "rand srand strtok getenv").split()
 
-FIELD_KEYS = ("returns", "requires", "edges", "error", "scan", "cost", "source", "note")
-ALGORITHM_KEYS = FIELD_KEYS + ("errors", "memory", "range")
-SCALARS = ("float", "double", "int", "unsigned", "size_t", "hdrp_u32", "uint8_t", "uint16_t",
-           "uint32_t", "uint64_t", "int32_t", "int64_t", "bool")
+# A count of bytes (size_t) has no range that could be written down.
+SCALARS = ("float", "double", "int", "unsigned", "hdrp_u32", "uint8_t", "uint16_t", "uint32_t",
+           "uint64_t", "int32_t", "int64_t")
 VECTORS = ("hdrp_v2", "hdrp_v3", "hdrp_v4", "hdrp_u32x4")
 ABSOLUTE_PATH = re.compile(r"(?<![\w.~$)}/])/(?:home|work|root|Users|tmp|mnt|media)/\w|"
                            r"(?<!\w)[A-Z]:\\\\?\w")
@@ -121,7 +120,7 @@ def check_fields(tree, header, function):
         return
     for parameter, entry in zip(function.parameters, entries):
         check_parameter(tree, header, function, parameter, entry)
-    allowed = FIELD_KEYS if formula else ALGORITHM_KEYS
+    allowed = hdrp_api.DOC_KEYS if formula else hdrp_api.ALGORITHM_DOC_KEYS
     for entry in rest:
         if entry.key not in allowed:
             report(f"'{entry.key}' is neither a parameter nor a field of a docstring; indent a "

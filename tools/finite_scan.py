@@ -20,6 +20,7 @@ ONE_UP, ONE_DOWN = 1.0 + 2.0 ** -23, 1.0 - 2.0 ** -24
 # Squares of 1e-23 and 2e19 leave the range of a float, those of 1e-18 and 1e19 do not.
 MAGNITUDES = [0.5, 1e-3, 0.1, 10.0, 1e-7, 1e-18, 1e-23, 1e-30, 1e3, 1e7, 1e19, 2e19, 1e30]
 FLOATS = {"hdrp_v2": 2, "hdrp_v3": 3, "hdrp_v4": 4}
+VECTORS = {**FLOATS, "hdrp_u32x4": 4}
 WITHIN = re.compile(r"\bto within (\d+) ulp\b")
 
 
@@ -147,7 +148,7 @@ class Writer:
         for other in hdrp_api.headers(root):
             self.structs.update(hdrp_api.structs(other))
             self.functions.update((f.name, f) for f in hdrp_api.functions(other))
-        for known in list(FLOATS) + ["hdrp_u32x4"]:
+        for known in VECTORS:
             self.structs.pop(known, None)
         self.declared, self.defined = [], []
         self.names = {}
@@ -178,9 +179,9 @@ class Writer:
         if kind in ("float", "hdrp_u32"):
             return [(label, offset, "FS_F32" if kind == "float" else "FS_U32")]
         dot = f"{label}." if label else ""
-        if kind in FLOATS or kind == "hdrp_u32x4":
+        if kind in VECTORS:
             number = "FS_U32" if kind == "hdrp_u32x4" else "FS_F32"
-            return [(dot + c, inside(c, kind), number) for c in "xyzw"[:FLOATS.get(kind, 4)]]
+            return [(dot + c, inside(c, kind), number) for c in "xyzw"[:VECTORS[kind]]]
         if kind not in self.structs:
             raise ScanError(f"type {kind} is none that the scan knows")
         result = []
@@ -261,10 +262,11 @@ class Writer:
             raise ScanError(f"{struct.name}.{member.name} is an array")
         if r.kind == "any":
             return self.source(member.type, ANY)
-        mask = re.match(r"(?:or of |of )?(HDRP_\w+_)\.\.\.", member.comment)
-        if mask and member.type == "hdrp_u32":
-            return self.table("hdrp_u32", (mask[1],),
-                              [f"{v}u" for v in mask_samples(mask[1], self.macros)])
+        groups = member.groups(self.macros) if member.type in VECTORS else []
+        if groups:
+            return self.group_source(struct, member, groups)
+        if member.mask() and member.type == "hdrp_u32":
+            return self.mask_source(member.mask())
         token = member.range(self.macros)
         if not token and member.type in self.structs:
             token = VALID
@@ -272,6 +274,35 @@ class Writer:
             raise ScanError(f"{struct.name}.{member.name} has no range in its comment, and the "
                             "comment of the struct no 'made by hdrp_...'")
         return self.source(member.type, token)
+
+    def mask_source(self, prefix):
+        return self.table("hdrp_u32", (prefix,),
+                          [f"{v}u" for v in mask_samples(prefix, self.macros)])
+
+    def group_source(self, struct, member, groups):
+        """A vector whose components have ranges of their own."""
+        name, is_new = self.name("source", (struct.name, member.name))
+        if not is_new:
+            return name
+        integers = member.type == "hdrp_u32x4"
+        rows, covered = [], 0
+        for first, count, token in groups:
+            covered += count
+            if token.startswith("HDRP_"):
+                kind, source = "hdrp_u32", self.mask_source(hdrp_api.MASK.match(token)[1])
+            else:
+                kind = "hdrp_u32" if integers else f"hdrp_v{count}" if count > 1 else "float"
+                source = self.source(kind, hdrp_api.parse_range(token, self.macros))
+            for i in range(count if integers else 1):
+                rows.append(f"{{offsetof({member.type}, {'xyzw'[first + i]}), &{source}}}")
+        if covered != VECTORS[member.type]:
+            raise ScanError(f"the comment of {struct.name}.{member.name} gives a range to "
+                            f"{covered} of {VECTORS[member.type]} components")
+        self.declared.append(f"static fs_source {name};\n")
+        parts, count = self.array("const fs_part", rows)
+        self.defined.append(f"static fs_source {name} = {{sizeof({member.type}), 0, NULL, {parts}, "
+                            f"{count}, NULL, 0, NULL, false}};\n")
+        return name
 
     # Results
 
@@ -294,12 +325,14 @@ class Writer:
         if kind in self.structs:
             rows = []
             for m in self.structs[kind].members:
-                token, comment = r, text
+                token, comment, at = r, text, f"{offset} + offsetof({kind}, {m.name})"
                 if r and r.kind == "valid":
                     token, comment = m.range(self.macros), m.comment
                     token = VALID if not token and m.type in self.structs else token
-                rows += self.checks(m.type, token, comment,
-                                    f"{offset} + offsetof({kind}, {m.name})")
+                    if m.type in FLOATS and m.groups(self.macros):
+                        rows += self.group_checks(m, at)
+                        continue
+                rows += self.checks(m.type, token, comment, at)
             return rows
         if r and r.kind == "unit" and kind in FLOATS:
             return [row("FS_UNIT", offset, FLOATS[kind])]
@@ -312,6 +345,14 @@ class Writer:
                 rows.append(row("FS_INTERVAL", at, bounds=interval()))
             elif number == "FS_F32":
                 rows.append(row("FS_FINITE", at))
+        return rows
+
+    def group_checks(self, member, offset):
+        rows = []
+        for first, count, token in member.groups(self.macros):
+            rows += self.checks(f"hdrp_v{count}" if count > 1 else "float",
+                                hdrp_api.parse_range(token, self.macros), member.comment,
+                                f"{offset} + {first} * sizeof(float)")
         return rows
 
     # Functions
@@ -349,13 +390,13 @@ class Writer:
             f.type, returns.range(self.macros), returns.text))
         result = self.type(f.type)
         arguments, count = self.array("const fs_argument", rows)
-        unpack = [f"    {p.type} {p.name};\n    memcpy(&{p.name}, arguments[{i}], "
+        unpack = [f"    {p.type} {p.name};\n    memcpy(&{p.name}, fs_arguments[{i}], "
                   f"sizeof {p.name});\n" for i, p in enumerate(f.parameters)]
         names = ", ".join(p.name for p in f.parameters)
         self.defined.append(
-            f"static void call_{f.name}(const void* const* arguments, void* result)\n{{\n"
-            f"{''.join(unpack)}    {f.type} r = {f.name}({names});\n    (void)arguments;\n"
-            "    memcpy(result, &r, sizeof r);\n}\n")
+            f"static void call_{f.name}(const void* const* fs_arguments, void* fs_result)\n{{\n"
+            f"{''.join(unpack)}    {f.type} fs_r = {f.name}({names});\n"
+            "    (void)fs_arguments;\n    memcpy(fs_result, &fs_r, sizeof fs_r);\n}\n")
         requires = self.requires(f, unpack)
         self.defined.append(
             f'static const fs_function {name} = {{"{f.name}", "{f.header}", NULL, &{result}, '
@@ -367,7 +408,7 @@ class Writer:
             return "NULL"
         unused = "".join(f"    (void){p.name};\n" for p in f.parameters)
         joined = " && ".join(f"({c})" for c in conditions)
-        self.defined.append(f"static bool required_{f.name}(const void* const* arguments)\n{{\n"
+        self.defined.append(f"static bool required_{f.name}(const void* const* fs_arguments)\n{{\n"
                             f"{''.join(unpack)}{unused}    return {joined};\n}}\n")
         return f"required_{f.name}"
 

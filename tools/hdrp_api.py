@@ -21,6 +21,10 @@ FLT_MIN = 1.1754943508222875e-38
 # built-in function in them does.
 PRIMITIVE_SECTIONS = ("language layer", "vectors")
 
+# What a docstring says of a formula, and what it may say of an algorithm besides.
+DOC_KEYS = ("returns", "requires", "edges", "error", "scan", "cost", "source", "note")
+ALGORITHM_DOC_KEYS = DOC_KEYS + ("errors", "memory", "range")
+
 INDEX_BEGIN = " * >>index"
 INDEX_END = " * >>end"
 
@@ -38,6 +42,7 @@ FIELD = re.compile(r"^ {2}(?P<key>\w+)(?:\s+(?P<value>\S.*))?$")
 CLAIM = re.compile(r"^<=\s*(?P<bound>[0-9.]+(?:[eE][+-]?[0-9]+)?)\s+"
                    r"(?P<unit>relative|absolute|degrees|ulp)\b.*?@accuracy\s+(?P<id>\w+)$", re.S)
 NO_CLAIM = re.compile(r"^none:\s+\S")
+MASK = re.compile(r"^(HDRP_\w+_)\.\.\.")
 NUMBER = re.compile(r"(?:0[xX][0-9a-fA-F]+|(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)")
 
 
@@ -204,9 +209,12 @@ class Doc:
         return next((f for f in self.fields if f.key == key), None)
 
 
-def parse_doc(comment, line=0):
-    """comment is the text between the opening '/**' and the closing '*/'; line is its first line."""
+def parse_doc(comment, line=0, parameters=()):
+    """comment is the text between the opening '/**' and the closing '*/'; line is its first line.
+
+    The summary goes on until a line begins with the name of a parameter or of a field."""
     doc = Doc(line=line)
+    known = set(ALGORITHM_DOC_KEYS) | {p.name for p in parameters}
     for number, raw in enumerate(comment.split("\n"), line):
         first = number == line
         if not first and raw.strip() and not raw.lstrip().startswith("*"):
@@ -216,13 +224,13 @@ def parse_doc(comment, line=0):
         text = text.rstrip()
         indent = len(text) - len(text.lstrip())
         match = FIELD.match(text) if not first else None
-        if match:
+        if match and (doc.fields or match["key"] in known):
             doc.fields.append(DocField(match["key"], match["value"] or "", number))
         elif not text.strip():
             continue
         elif doc.fields and indent >= 4:
             doc.fields[-1].text = (doc.fields[-1].text + " " + text.strip()).strip()
-        elif not doc.fields and (first or indent == 1):
+        elif not doc.fields:
             doc.summary = (doc.summary + " " + text.strip()).strip()
         else:
             doc.strays.append((number, text.strip()))
@@ -306,6 +314,21 @@ class Member:
                 return found
         return FINITE if "any length" in self.comment else None
 
+    def groups(self, macros):
+        """[(first component, how many, token)] of a comment such as "xyz unit, w [0,1] size",
+        which gives the components of a vector ranges of their own; [] for any other."""
+        found = re.findall(r"(?:^|(?<=[,;] ))([xyzw]{1,4}|[rgba]{1,4}) (\S+)", self.comment)
+        letters = "xyzw" if re.match(r"[xyzw]+ ", self.comment) else "rgba"
+        groups = [(letters.find(names), len(names), token) for names, token in found
+                  if parse_range(token, macros) or MASK.match(token)]
+        starts_so = found and self.comment.startswith(f"{found[0][0]} {found[0][1]}")
+        return groups if starts_so and groups and groups[0][0] == 0 else []
+
+    def mask(self):
+        """The prefix of the macros whose union the member is, or None."""
+        match = MASK.match(self.comment)
+        return match[1] if match else None
+
 
 @dataclass
 class Struct:
@@ -315,6 +338,10 @@ class Struct:
     members: list
     comment: str
     is_shared: bool  # readable by shaders, not the C-only "typedef struct"
+
+    def __iter__(self):
+        """(type, name) of the members."""
+        return ((member.type, member.name) for member in self.members)
 
     @property
     def producers(self):
@@ -489,10 +516,11 @@ class Header:
         comment = self.comment_before(match.start(), "/**")
         line = self.line_of(match.start())
         text = self.code[opening + 1:closing]
+        parameters = parse_parameters(text)
         function = Function(self.name, line, self.section_of(match.start()),
                             match["qualifier"] or "", " ".join(match["type"].split()),
-                            match["name"], parse_parameters(text), " ".join(text.split()),
-                            parse_doc(*comment) if comment else None)
+                            match["name"], parameters, " ".join(text.split()),
+                            parse_doc(*comment, parameters) if comment else None)
         if tail[1] == "{":
             brace = closing + 1 + tail.end() - 1
             end = matching(self.code, brace, "{}")

@@ -237,17 +237,23 @@ static void print_failure(const fs_function* f, const fs_check* c, const void* c
     }
     printf("     returned   ");
     print_value(f->result, result);
+    printf("\n     in which   ");
+    for (size_t i = 0; i < f->result->leaf_count; ++i) {
+        if (f->result->leaves[i].offset == c->offset) {
+            printf("%s ", f->result->leaves[i].name);
+        }
+    }
     switch (c->rule) {
     case FS_FINITE:
-        printf("\n     which is not finite (byte %zu)\n", c->offset);
+        printf("is not finite\n");
         break;
     case FS_UNIT:
-        printf("\n     which is not a unit vector (byte %zu)\n", c->offset);
+        printf("begins what is not a unit vector\n");
         break;
     case FS_INTEGER:
     case FS_INTERVAL:
-        printf("\n     which is not in %c%.9g,%.9g%c (byte %zu)\n", c->lo_open ? '(' : '[', c->lo,
-               c->hi, c->hi_open ? ')' : ']', c->offset);
+        printf("is not in %c%.9g,%.9g%c\n", c->lo_open ? '(' : '[', c->lo, c->hi,
+               c->hi_open ? ')' : ']');
         break;
     }
 }

@@ -57,7 +57,7 @@ class ApiCheck(trees.TreeTest):
 
     def test_parameters_are_documented_in_order(self):
         self.broken("hdrp_brdf.h", " *  x        [HDRP", " *  y        [HDRP",
-                    "parameter 'x' has no entry in its place (found 'y')")
+                    "parameter 'x' has no entry in its place (found 'returns')")
         self.broken("hdrp_brdf.h", "float* out,\n                            hdrp_u32 count);",
                     "hdrp_u32 count,\n                            float* out);",
                     "parameter 'count' has no entry in its place (found 'out')")

@@ -51,10 +51,13 @@ class FiniteScan(trees.TreeTest):
     def test_a_total_formula_passes(self):
         output = self.passes(formula("return x;", returns="[0,1]"))
         self.assertIn("1 functions, 0 failed", output)
+        names = ("arguments", "result")  # which the generated code might use itself
+        self.passes("".join(formula(f"return {n};", name=f"of_{n}", parameters=f"float {n}",
+                                    entries=[(n, "[0,1]")]) for n in names))
 
     def test_a_pole_at_an_end_is_found(self):
         self.fails(formula("return 1.0f / (1.0f - x);"), "FAIL hdrp_broken (hdrp_math.h)",
-                   "x          0x1p+0 (1)", "returned   inf (inf)", "which is not finite")
+                   "x          0x1p+0 (1)", "returned   inf (inf)", "is not finite")
         self.fails(formula("return 1.0f / x;"), "0x1p-149")
         self.passes(formula("return 1.0f / x;", entries=[("x", "[FLT_MIN,1]")]))
 
@@ -84,20 +87,20 @@ class FiniteScan(trees.TreeTest):
         self.passes(formula("return x > 0.0f ? 1.0f : 0.0f;", entries=[("x", "any")]))
 
     def test_the_result_range_is_checked(self):
-        self.fails(formula("return x + 1e-6f;", returns="[0,1]"), "which is not in [0,1]")
-        self.fails(formula("return x;", returns="(0,1]"), "which is not in (0,1]")
+        self.fails(formula("return x + 1e-6f;", returns="[0,1]"), "is not in [0,1]")
+        self.fails(formula("return x;", returns="(0,1]"), "is not in (0,1]")
         self.passes(formula("return x / x;", returns="any"))
-        self.fails(formula("return x * 1.0000001f;", returns="[0,1]"), "which is not in [0,1]")
+        self.fails(formula("return x * 1.0000001f;", returns="[0,1]"), "is not in [0,1]")
         self.passes(formula("return x * 1.0000001f;", returns="[0,1] to within 2 ulp"))
         self.fails(formula("return 16u;", kind="hdrp_u32", returns="[0,15]"),
-                   "which is not in [0,15]")
+                   "is not in [0,15]")
 
     def test_vectors_and_unit_vectors(self):
         v3 = {"kind": "hdrp_v3", "parameters": "hdrp_v3 x"}
         self.fails(formula("x.y = 1.0f / (2.0f - x.x); return x;", entries=[("x", "[0,2]")], **v3),
                    "returned   x 0x1p+1")
         self.fails(formula("x.x = x.z; return x;", entries=[("x", "unit")], returns="unit", **v3),
-                   "which is not a unit vector")
+                   "is not a unit vector")
         self.passes(formula("return x;", entries=[("x", "unit")], returns="unit", **v3))
         # What rounding makes of a unit vector: 1 - z^2 may be negative.
         self.fails(formula("x.x = hdrp_sqrt(1.0f - x.z * x.z); return x;",
@@ -119,9 +122,32 @@ class FiniteScan(trees.TreeTest):
         self.fails(pair + formula("return p.a;", parameters="hdrp_pair p", entries=[("p", "any")]),
                    "nan")
         self.fails(pair + formula("p.a = p.a + 1.0f; return p;", kind="hdrp_pair", returns="valid",
-                                  **of_pair), "which is not in [0,1]")
+                                  **of_pair), "is not in [0,1]")
         self.fails(pair.replace("/* unit */", "/* a normal */") + formula("return p.a;", **of_pair),
                    "is not scanned: hdrp_pair.n has no range in its comment")
+
+    def test_components_of_a_vector_may_have_ranges_of_their_own(self):
+        self.assertIn("struct hdrp_v3", trees.MATH)
+        record = ("struct hdrp_v4 {\n    float x, y, z, w;\n};\nHDRP_TYPEDEF(hdrp_v4)\n"
+                  "struct hdrp_u32x4 {\n    hdrp_u32 x, y, z, w;\n};\nHDRP_TYPEDEF(hdrp_u32x4)\n"
+                  "struct hdrp_record {\n    hdrp_v4 axis; /* xyz unit, w [2,3] size */\n"
+                  "    hdrp_u32x4 bits; /* x HDRP_BIT_..., yz [5,6], w any */\n};\n"
+                  "HDRP_TYPEDEF(hdrp_record)\n#define HDRP_BIT_ONE 1u\n\n")
+        of_record = {"parameters": "hdrp_record r", "entries": [("r", "valid")]}
+        self.passes(record + formula(
+            "float l = r.axis.x * r.axis.x + r.axis.y * r.axis.y + r.axis.z * r.axis.z;\n"
+            "    return fabsf(l - 1.0f) > 1e-6f || r.axis.w < 2.0f || r.axis.w > 3.0f ||\n"
+            "    r.bits.x > 1u || r.bits.y < 5u || r.bits.z > 6u ? sqrtf(-1.0f) : 0.0f;",
+            **of_record))
+        self.fails(record + formula("return 1.0f / (3.0f - r.axis.w);", **of_record),
+                   "axis.w 0x1.8p+1")
+        self.fails(record + formula("r.axis.w = 1.0f; return r;", kind="hdrp_record",
+                                    returns="valid", **of_record), "axis.w is not in [2,3]")
+        self.fails(record + formula("r.axis.x = r.axis.w; return r;", kind="hdrp_record",
+                                    returns="valid", **of_record), "axis.x begins what is not a "
+                   "unit vector")
+        self.fails(record.replace(", w [2,3] size", "") + formula("return 0.0f;", **of_record),
+                   "is not scanned: the comment of hdrp_record.axis gives a range to 3 of 4")
 
     def test_structs_made_by_a_function_come_from_it(self):
         made = ("/* Made by hdrp_made_from. */\nstruct hdrp_made {\n    float a, b;\n};\n"

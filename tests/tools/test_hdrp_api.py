@@ -40,7 +40,8 @@ typedef enum hdrp_env_kind {
 } hdrp_env_kind;
 
 /** A summary over
- * two lines.
+ * three lines,
+ *  and so on.
  *  view     valid  the view
  *  light_m  [0,HDRP_ENV_TWICE)
  *           metres; see "x*y"
@@ -114,7 +115,7 @@ class Reader(trees.TreeTest):
 
     def test_docstrings_join_continuations(self):
         doc = self.functions["hdrp_env_area"].doc
-        self.assertEqual(doc.summary, "A summary over two lines.")
+        self.assertEqual(doc.summary, "A summary over three lines, and so on.")
         self.assertEqual([f.key for f in doc.fields], ["view", "light_m", "returns", "edges",
                                                        "error", "error", "source"])
         self.assertEqual(doc.get("light_m"), '[0,HDRP_ENV_TWICE) metres; see "x*y"')
@@ -135,6 +136,7 @@ class Reader(trees.TreeTest):
         self.assertEqual(ranges, {"near_m": "(0,inf)", "far_m": "(0,inf)", "up": "unit",
                                   "share": "[0,1]", "axis": "finite", "flags": "None",
                                   "unitless": "None"})
+        self.assertEqual(list(view)[2], ("hdrp_v3", "up"))
         image = self.header.structs()["hdrp_env_image"]
         self.assertFalse(image.is_shared)
         self.assertEqual([(m.type, m.name, m.array) for m in image.members],
