@@ -29,6 +29,15 @@ class ApiCheck(trees.TreeTest):
     def test_the_tree_is_right(self):
         self.expect()
 
+    def test_the_example_of_the_manual_is_right(self):
+        manual = (trees.ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+        example = manual[manual.index("```c\n") + 5:]
+        example = example[:example.index("```")] + "{\n    return n_dot_h * alpha;\n}\n\n"
+        self.change("hdrp_brdf.h", "/** One over x.", "#define HDRP_ALPHA_MIN 1e-4f\n\n" + example +
+                    "/** One over x.")
+        self.change("hdrp_brdf.h", "lobes: inverse", "lobes: d_ggx inverse")
+        self.expect("hdrp_brdf_d_ggx is in no unit test", "@accuracy brdf_d_ggx has no entry")
+
     def test_the_program_fails_and_names_file_and_line(self):
         program = [sys.executable, trees.ROOT / "tools" / "api_check.py", "--root", self.root]
         self.assertEqual(subprocess.run(program, capture_output=True, check=False).returncode, 0)
