@@ -517,7 +517,7 @@ HDRP_FN hdrp_v4 hdrp_v4_from_v3(hdrp_v3 v, float w)
 /** Unit vector along v, whatever its length.
  *  v         any     direction; any length, any value
  *  fallback  finite  what to return when v has no direction
- *  returns   unit    v / |v|, or fallback
+ *  returns   finite  v / |v|, of length 1, or fallback
  *  edges     a zero, infinite or NaN v gives fallback; no overflow or underflow in between
  *  error     <= 1.5e-7 absolute, per component  @accuracy normalize_or
  *  source    scaling by the largest component, as in Blue 1978, "A Portable Fortran Program to
@@ -528,7 +528,7 @@ HDRP_FN hdrp_v3 hdrp_normalize_or(hdrp_v3 v, hdrp_v3 fallback)
     hdrp_v3 s = hdrp_v3_make(v.x / m, v.y / m, v.z / m);
     float d = hdrp_v3_dot(s, s);
     float k = 1.0f / hdrp_sqrt(d);
-    /* For a usable v, d is in [1,3]. 0/0, inf/inf and NaN all make d a NaN, which fails the test. */
+    /* For a usable v, d is in [1,3]. 0/0, inf/inf and NaN make d a NaN, which fails the test. */
     if (!(d >= 1.0f && m <= HDRP_FLT_MAX)) {
         return fallback;
     }
