@@ -228,7 +228,8 @@ def check_prefixes(tree):
             return name.startswith((own, "hdrp_i_")) or name + "_" == own
         for function in header.functions():
             if not fits(function.name):
-                tree.report(header.name, function.line, f"{function.name} does not begin with {own}")
+                tree.report(header.name, function.line,
+                            f"{function.name} does not begin with {own}")
             if function.qualifier in ("static", "extern", "") and not function.is_private:
                 tree.report(header.name, function.line, f"{function.name} is neither HDRP_FN nor "
                             "HDRP_API: a private function is named hdrp_i_...")

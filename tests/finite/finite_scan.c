@@ -226,15 +226,34 @@ static void print_value(const fs_type* type, const unsigned char* bytes)
     }
 }
 
-static void print_failure(const fs_function* f, const fs_check* c, const void* const* arguments,
-                          const unsigned char* result)
+static void print_arguments(const fs_function* f, const void* const* arguments)
 {
-    printf("FAIL %s (%s)\n", f->name, f->header);
     for (size_t i = 0; i < f->argument_count; ++i) {
         printf("     %-10s ", f->arguments[i].name);
         print_value(f->arguments[i].type, arguments[i]);
         printf("\n");
     }
+}
+
+/* The undefined behaviour sanitizer calls this before it reports and ends the program. */
+static const fs_function* current_function;
+static const void* const* current_arguments;
+void __ubsan_on_report(void);
+void __ubsan_on_report(void)
+{
+    if (current_function) {
+        printf("FAIL %s (%s) does what is undefined\n", current_function->name,
+               current_function->header);
+        print_arguments(current_function, current_arguments);
+        fflush(stdout);
+    }
+}
+
+static void print_failure(const fs_function* f, const fs_check* c, const void* const* arguments,
+                          const unsigned char* result)
+{
+    printf("FAIL %s (%s)\n", f->name, f->header);
+    print_arguments(f, arguments);
     printf("     returned   ");
     print_value(f->result, result);
     printf("\n     in which   ");
@@ -274,6 +293,8 @@ static bool scan(const fs_function* f, uint64_t limit)
         return false;
     }
     walk w = walk_begin(f, limit);
+    current_function = f;
+    current_arguments = w.arguments;
     while (walk_next(&w)) {
         if (f->is_required && !f->is_required(w.arguments)) {
             continue;
@@ -289,6 +310,7 @@ static bool scan(const fs_function* f, uint64_t limit)
             }
         }
     }
+    current_function = NULL;
     if (calls == 0) {
         printf("FAIL %s (%s): no sample meets its 'requires'\n", f->name, f->header);
         return false;

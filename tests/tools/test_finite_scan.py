@@ -22,7 +22,7 @@ def formula(body, name="broken", kind="float", parameters="float x", entries=(("
 
 
 class FiniteScan(trees.TreeTest):
-    def run_scan(self, text, *arguments):
+    def run_scan(self, text, *flags):
         """Exit status and output of the scan of a header with only this text in it."""
         math_header = trees.MATH
         start = math_header.index("/* >>sampling */")
@@ -31,9 +31,10 @@ class FiniteScan(trees.TreeTest):
         self.write("scan.c", finite_scan.Writer(self.root / "hdrp_math.h").text())
         program = self.root / "scan"
         subprocess.run(["cc", "-std=c11", "-O1", "-Wall", "-Wpedantic", "-Wconversion", "-Werror",
-                        f"-I{self.root}", f"-I{RUNNER}", RUNNER / "finite_scan.c",
-                        self.root / "scan.c", "-o", program, "-lm"], check=True)
-        run = subprocess.run([program, *arguments], capture_output=True, text=True, check=False)
+                        f"-I{self.root}", f"-I{RUNNER}", *flags,
+                        RUNNER / "finite_scan.c", self.root / "scan.c", "-o", program, "-lm"],
+                       check=True)
+        run = subprocess.run([program], capture_output=True, text=True, check=False)
         return run.returncode, run.stdout
 
     def passes(self, text):
@@ -188,6 +189,14 @@ class FiniteScan(trees.TreeTest):
                        f"i          {value}")
         self.passes(formula("return i < 3u || i > 70000u ? sqrtf(-1.0f) : 0.0f;", **index))
 
+    def test_undefined_behaviour_is_reported_with_its_arguments(self):
+        status, output = self.run_scan(
+            formula("return (hdrp_u32)x;", kind="hdrp_u32", entries=[("x", "[-2,1]")]),
+            "-fsanitize=undefined,float-cast-overflow", "-fno-sanitize-recover=all")
+        self.assertEqual(status, 1, output)
+        self.assertIn("FAIL hdrp_broken (hdrp_math.h) does what is undefined\n"
+                      "     x          -0x1p+1", output)
+
     def test_a_formula_that_cannot_be_scanned_fails(self):
         for entries, reason in [((("x", "about one"),), "parameter x has no range"),
                                 ((("x", "[1,0]"),), "[1,0] is empty"),
@@ -196,10 +205,9 @@ class FiniteScan(trees.TreeTest):
                                 ((("x", "unit"),), "float does not take 'unit'")]:
             self.fails(formula("return x;", entries=entries),
                        f"FAIL hdrp_broken (hdrp_math.h) is not scanned: {reason}")
-        self.fails("/** One sentence. */\nHDRP_FN float hdrp_broken(float x)\n{\n    return x;\n}\n",
-                   "its docstring has no fields")
-        self.fails("HDRP_FN float hdrp_broken(float x)\n{\n    return x;\n}\n",
-                   "its docstring has no fields")
+        bare = "HDRP_FN float hdrp_broken(float x)\n{\n    return x;\n}\n"
+        self.fails(bare, "its docstring has no fields")
+        self.fails("/** One sentence. */\n" + bare, "its docstring has no fields")
 
     def test_a_docstring_may_excuse_its_formula(self):
         excused = formula("return 1.0f / x;", more=" *  scan  none: derivatives\n")
