@@ -342,19 +342,12 @@ def check_lengths(tree):
 
 
 def check_literals(tree):
-    """A float literal carries f, unless the function that it is in computes in double."""
+    """A float literal of a formula or a macro carries f. Algorithms may compute in double, and
+    -Wdouble-promotion sees where they do so by mistake."""
     for header in tree.headers:
-        double_lines = set()
-        for function in header.functions():
-            parts = function.type, function.parameter_text, function.body
-            if re.search(r"\bdouble\b", " ".join(parts)):
-                double_lines.update(range(function.body_line,
-                                          function.body_line + function.length))
-        for number, line in enumerate(header.code.split("\n"), 1):
-            may_be_double = header.layer_of(number) in ("algorithm", "implementation") and \
-                (number in double_lines or re.search(r"\bdouble\b", line))
+        for number, line in code_lines(header, ("formula", "directive")):
             for match in FLOAT_LITERAL.finditer(line):
-                if match["suffix"] not in ("f", "F") and not may_be_double:
+                if match["suffix"] not in ("f", "F"):
                     tree.report(header.name, number, f"{match[0]} lacks its f")
 
 
