@@ -1,7 +1,11 @@
 /* hdrp_brdf.h - material model: artist data to engine data, every lobe, and the Lit model.
  * SPDX-License-Identifier: MIT
  *
- * See hdrp_math.h for the languages, the conventions and the override macros. */
+ * See hdrp_math.h for the languages, the conventions and the override macros.
+ *
+ * >>index of the functions, without hdrp_brdf_ (written by tools/api_check.py --write)
+ *   material: surface_default diffuse_color fresnel0 data_from_surface
+ * >>end */
 #ifndef HDRP_BRDF_H
 #define HDRP_BRDF_H
 

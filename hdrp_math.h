@@ -25,6 +25,16 @@
  *     HDRP_FN   qualifier of formula functions      default "static inline" (C, C++)
  *     HDRP_API  qualifier of algorithm functions    default "extern" (C, C++)
  *     HDRP_HLSL the compiler reads HLSL             default: set where DXC is recognised
+ *
+ * >>index of the functions, without hdrp_ (written by tools/api_check.py --write)
+ *   language layer: sqrt sin cos tan asin acos atan2 exp exp2 log log2 pow floor abs f32_from_u32
+ *       u32_from_f32 bits_from_f32 f32_from_bits min max clamp saturate lerp sq sign_not_zero
+ *   vectors: v2_make v3_make v4_make u32x4_make v2_add v2_sub v2_scale v2_dot v3_splat v3_add
+ *       v3_sub v3_mul v3_scale v3_mad v3_neg v3_lerp v3_max v3_saturate v3_max_component v3_dot
+ *       v3_cross v3_length v3_normalize v4_mul v4_dot v3_from_v4 v4_from_v3 normalize_or
+ *       basis_from_normal
+ *   algorithm layer: result_string
+ * >>end
  */
 #ifndef HDRP_MATH_H
 #define HDRP_MATH_H
@@ -517,7 +527,7 @@ HDRP_FN hdrp_v4 hdrp_v4_from_v3(hdrp_v3 v, float w)
 /** Unit vector along v, whatever its length.
  *  v         any     direction; any length, any value
  *  fallback  finite  what to return when v has no direction
- *  returns   unit    v / |v|, or fallback
+ *  returns   finite  v / |v|, of length 1, or fallback
  *  edges     a zero, infinite or NaN v gives fallback; no overflow or underflow in between
  *  error     <= 1.5e-7 absolute, per component  @accuracy normalize_or
  *  source    scaling by the largest component, as in Blue 1978, "A Portable Fortran Program to
@@ -528,7 +538,7 @@ HDRP_FN hdrp_v3 hdrp_normalize_or(hdrp_v3 v, hdrp_v3 fallback)
     hdrp_v3 s = hdrp_v3_make(v.x / m, v.y / m, v.z / m);
     float d = hdrp_v3_dot(s, s);
     float k = 1.0f / hdrp_sqrt(d);
-    /* For a usable v, d is in [1,3]. 0/0, inf/inf and NaN all make d a NaN, which fails the test. */
+    /* For a usable v, d is in [1,3]. 0/0, inf/inf and NaN make d a NaN, which fails the test. */
     if (!(d >= 1.0f && m <= HDRP_FLT_MAX)) {
         return fallback;
     }
