@@ -108,6 +108,11 @@ void acc_direction(acc* a, double out[3])
     out[2] = z;
 }
 
+float acc_float(double x)
+{
+    return (float)x;
+}
+
 static const acc_claim* find_claim(const char* id)
 {
     for (size_t i = 0; i < CLAIM_COUNT; ++i) {

@@ -61,4 +61,8 @@ double acc_uniform(acc* a, double lo, double hi);
 double acc_log_uniform(acc* a, double lo, double hi); /* 0 < lo < hi */
 void acc_direction(acc* a, double out[3]);            /* uniform on the unit sphere */
 
+/* x rounded to float, out of line: gcc 12 at -O2 vectorises two (double)(float)x in a row and drops
+ * the rounding, so that a reference would see an input that the float function does not. */
+float acc_float(double x);
+
 #endif
