@@ -676,11 +676,11 @@ HDRP_FN float hdrp_i_complement(hdrp_u32 bit, float total, float x)
 }
 
 /** Arc cosine by a polynomial of degree 5 and a square root.
- *  x        any     cosine; [-1,1]
- *  returns  [0,pi]  [rad]
+ *  x        any          cosine
+ *  returns  [0,HDRP_PI]  [rad]
  *  edges    exactly pi at -1 and 0 at 1; limited to [-1,1]; NaN gives 0 or pi
  *  error    <= 1.6e-6 absolute for x in [-1,1]  @accuracy acos_fast
- *  error    <= 1.2e-6 relative for x in [0,1]    @accuracy acos_fast_relative
+ *  error    <= 1.2e-6 relative for x in [0,1]   @accuracy acos_fast_relative
  *  source   form of Abramowitz and Stegun 1964, 4.4.45, which has 7e-5; coefficients own
  *  note     the constant term is pi/2, so that the two halves meet at 0 */
 HDRP_FN float hdrp_acos_fast(float x)
@@ -694,9 +694,9 @@ HDRP_FN float hdrp_acos_fast(float x)
 }
 
 /** Angle of the point (x, y) from the +x axis by a polynomial of degree 13.
- *  y        any      second coordinate
- *  x        any      first coordinate
- *  returns  [-pi,pi] [rad]; carries the sign of y
+ *  y        any  second coordinate
+ *  x        any  first coordinate
+ *  returns  [-3.1415928,3.1415928]  [rad]; carries the sign of y
  *  edges    signs of zeros count, as in C; an infinite coordinate or NaN counts as FLT_MAX; where
  *           both are denormal the angle is that of (x, FLT_MIN) or (FLT_MIN, y)
  *  error    <= 1e-6 absolute            @accuracy atan2_fast
@@ -720,7 +720,7 @@ HDRP_FN float hdrp_atan2_fast(float y, float x)
 
 /** 2 to the power x by a polynomial of degree 5.
  *  x        any          exponent
- *  returns  [0,FLT_MAX]  exact for integers; denormal results are rounded correctly
+ *  returns  [0,FLT_MAX]  exact for integers; denormal results are rounded once
  *  edges    0 below -150, FLT_MAX from 128 on: never infinite; NaN gives 0
  *  error    <= 2.5e-7 relative for x in [-126,128)  @accuracy exp2_fast
  *  source   minimax polynomial over half an octave on each side; coefficients own
@@ -777,6 +777,7 @@ HDRP_FN float hdrp_pow_fast(float x, float y)
     hdrp_u32 zero = (hdrp_i_limited_bits(x, 0u, HDRP_I_INFINITY_BITS) - 1u) >> 31;
     return hdrp_exp2_fast(y * hdrp_i_select(zero, hdrp_log2_fast(x), -HDRP_FLT_MAX));
 }
+
 /** Reciprocal square root by integer arithmetic and one correction of third order.
  *  x        any         anything
  *  returns  (0,9.3e18]  1 / sqrt(x)
@@ -800,8 +801,8 @@ struct hdrp_sincos_result {
 };
 HDRP_TYPEDEF(hdrp_sincos_result)
 
-/** Sine and cosine in nearly full precision, the same on every device.
- *  x        any     [rad]; [-8192,8192]
+/** Sine and cosine in nearly full precision, also where the built-ins have little.
+ *  x        any     [rad]
  *  returns  [-1,1]  both
  *  edges    sine(-0) = -0; beyond +-8192 [rad] as at the end of the range; NaN as -8192
  *  error    <= 1.1e-7 absolute for |x| <= 8192  @accuracy sincos
@@ -826,11 +827,11 @@ HDRP_FN hdrp_sincos_result hdrp_sincos(float x)
 }
 
 /** Sine and cosine by half turns: two short polynomials and no exchange of the two.
- *  x        any                  [rad]; [-8192,8192]
- *  returns  [-1.000001,1.000001]  both
+ *  x        any  [rad]
+ *  returns  [-1.0000012,1.0000012]  both
  *  edges    beyond +-8192 [rad] as at the end of the range; NaN as -8192
  *  error    <= 1.2e-6 absolute in the sine    @accuracy sincos_fast_sine
- *  error    <= 9e-6 absolute in the cosine  @accuracy sincos_fast_cosine
+ *  error    <= 9e-6 absolute in the cosine    @accuracy sincos_fast_cosine
  *  source   as hdrp_sincos, with pi in two parts; coefficients own */
 HDRP_FN hdrp_sincos_result hdrp_sincos_fast(float x)
 {
@@ -894,9 +895,9 @@ HDRP_FN float hdrp_srgb_from_linear(float x)
 
 /** Linear value of an sRGB code by a polynomial of degree 5.
  *  srgb     any    code; limited to [0,1]
- *  returns  [0,1]  monotone; exactly 0 at 0 and 1 at 1
+ *  returns  [0,1]  monotone up to rounding, 2e-7; exactly 0 at 0 and 1 at 1
  *  edges    negative and NaN give 0
- *  error    <= 4.8e-4 relative  @accuracy linear_from_srgb_fast
+ *  error    <= 4.6e-4 relative  @accuracy linear_from_srgb_fast
  *  error    <= 3.6e-4 absolute  @accuracy linear_from_srgb_fast_absolute
  *  source   minimax fit to IEC 61966-2-1:1999, pinned at the knee and at 1; coefficients own
  *  note     all 256 8-bit codes survive decoding here and encoding with either encoder */
@@ -905,14 +906,14 @@ HDRP_FN float hdrp_linear_from_srgb_fast(float srgb)
     hdrp_u32 u = hdrp_i_limited_bits(srgb, 0u, HDRP_I_ONE_BITS);
     hdrp_u32 curved = (hdrp_bits_from_f32(HDRP_SRGB_CODE_KNEE) - u) >> 31;
     float c = hdrp_f32_from_bits(u);
-    float p = 0.458132803f + c * (-0.252277642f + c * 0.113454856f);
-    p = 0.999121487f + c * (0.965084612f + c * p);
-    return hdrp_i_select(curved, c * (1.0f / HDRP_SRGB_SLOPE), 1.0f + (c - 1.0f) * p);
+    float p = 0.70983088f + c * (-0.364954323f + c * 0.113103628f);
+    p = 0.000879108906f + c * (0.0340180881f + c * (0.507122636f + c * p));
+    return hdrp_i_select(curved, c * (1.0f / HDRP_SRGB_SLOPE), p);
 }
 
 /** sRGB code of a linear value by a polynomial of its fourth root.
  *  x        any    linear; limited to [0,1]
- *  returns  [0,1]  monotone; exactly 0 at 0 and 1 at 1
+ *  returns  [0,1]  monotone up to rounding, 4e-7; exactly 0 at 0 and 1 at 1
  *  edges    negative and NaN give 0
  *  error    <= 5e-5 absolute  @accuracy srgb_from_linear_fast
  *  source   minimax fit to IEC 61966-2-1:1999, pinned at the knee and at 1; coefficients own */
@@ -922,8 +923,9 @@ HDRP_FN float hdrp_srgb_from_linear_fast(float x)
     hdrp_u32 curved = (hdrp_bits_from_f32(HDRP_SRGB_LINEAR_KNEE) - u) >> 31;
     float c = hdrp_f32_from_bits(u);
     float t = hdrp_sqrt(hdrp_sqrt(c));
-    float p = 1.06429601f + t * (0.870155513f + t * (-0.256675482f + t * 0.08214169f));
-    return hdrp_i_select(curved, c * HDRP_SRGB_SLOPE, 1.0f + (t - 1.0f) * p);
+    float p = 1.12687695f + t * (-0.338865966f + t * 0.082160078f);
+    p = -0.0642935038f + t * (0.194122478f + t * p);
+    return hdrp_i_select(curved, c * HDRP_SRGB_SLOPE, p);
 }
 
 /** hdrp_linear_from_srgb of each component. */
@@ -957,7 +959,7 @@ HDRP_FN hdrp_v3 hdrp_v3_srgb_from_linear_fast(hdrp_v3 v)
 /** Relative luminance of a linear Rec.709 colour.
  *  color    [0,FLT_MAX]  linear Rec.709
  *  returns  [0,FLT_MAX]  luminance in the unit of the colour; exactly 1 for white
- *  edges    finite up to three times FLT_MAX at once; negative components count as such
+ *  edges    finite even where all three are FLT_MAX; negative components count as such
  *  error    <= 2.4e-7 relative  @accuracy luminance
  *  source   Recommendation ITU-R BT.709-6, item 3.2, rounded to four digits as there */
 HDRP_FN float hdrp_luminance(hdrp_v3 color)
@@ -1425,14 +1427,14 @@ HDRP_FN float hdrp_unit_from_u32(hdrp_u32 u)
 
 /** Integer hash: a bijection of the 32-bit integers in which every bit changes every other.
  *  u        any  all 2^32 values
- *  returns  any  flipping a bit of u flips each bit of the result with probability 0.5 +- 0.005
+ *  returns  any  flipping a bit of u flips each bit of the result with probability 0.5 +- 0.001
  *  edges    none; 0 is not mapped to 0
  *  error    none: exact
  *  source   two rounds of multiply and xor-shift, as the finaliser of MurmurHash3 (Appleby 2011);
  *           multipliers from Wellons 2018, "Prospecting for Hash Functions" */
 HDRP_FN hdrp_u32 hdrp_hash1(hdrp_u32 u)
 {
-    hdrp_u32 h = u + 0x9e3779b9u;
+    hdrp_u32 h = u ^ 0x9e3779b9u; /* any number but 0, which would stay 0 */
     h = (h ^ (h >> 16)) * 0x21f0aaadu;
     h = (h ^ (h >> 15)) * 0xd35a2d97u;
     return h ^ (h >> 15);
@@ -1444,10 +1446,12 @@ HDRP_FN hdrp_u32 hdrp_hash1(hdrp_u32 u)
  *  returns  any  as hdrp_hash1
  *  edges    no collisions in a row or a column
  *  error    none: exact
- *  source   hdrp_hash1, nested */
+ *  source   hdrp_hash1 of both; the odd factor only tells them apart
+ *  note     in the cheaper hash1(x + hash1(y)) whole rows repeat, shifted, wherever two values of
+ *           hash1(y) are close */
 HDRP_FN hdrp_u32 hdrp_hash2(hdrp_u32 x, hdrp_u32 y)
 {
-    return hdrp_hash1(x + hdrp_hash1(y));
+    return hdrp_hash1(hdrp_hash1(x) ^ (hdrp_hash1(y) * 0x9e3779b9u));
 }
 
 /** Integer hash of three numbers, such as a pixel and a frame.
@@ -1457,10 +1461,11 @@ HDRP_FN hdrp_u32 hdrp_hash2(hdrp_u32 x, hdrp_u32 y)
  *  returns  any  as hdrp_hash1
  *  edges    none
  *  error    none: exact
- *  source   hdrp_hash1, nested */
+ *  source   hdrp_hash1 of all three; the odd factors only tell them apart */
 HDRP_FN hdrp_u32 hdrp_hash3(hdrp_u32 x, hdrp_u32 y, hdrp_u32 z)
 {
-    return hdrp_hash1(x + hdrp_hash2(y, z));
+    return hdrp_hash1(hdrp_hash1(x) ^ (hdrp_hash1(y) * 0x9e3779b9u) ^
+                      (hdrp_hash1(z) * 0x85ebca6bu));
 }
 
 /** Fraction of i times (high + low 2^-32) 2^-32, in units of 2^-32; exact to 3 units. */
@@ -1593,8 +1598,8 @@ HDRP_FN hdrp_v3 hdrp_hemisphere_cosine(hdrp_v2 u)
 }
 
 /** Density of hdrp_hemisphere_cosine.
- *  cosine   [-1,1]    of the angle to +Z
- *  returns  [0,1/pi]  [1/sr]
+ *  cosine   [-1,1]           of the angle to +Z
+ *  returns  [0,HDRP_INV_PI]  [1/sr]
  *  edges    0 below the horizon and for NaN
  *  error    <= 1.2e-7 relative  @accuracy hemisphere_cosine_pdf
  *  source   definition */

@@ -163,35 +163,39 @@ def sincos():
         rest -= part
 
 
-def pinned(curve, lo, at_lo, power, relative):
-    """curve(x) = 1 + (x - 1) Q(x) on [lo,1], exact at 1 and equal to at_lo at lo: Q lowest first."""
-    lo = mp.mpf(lo)
-    slope = (1 - mp.mpf(at_lo)) / (1 - lo)      # Q(lo)
+def pinned(curve, lo, at_lo, degree, relative):
+    """A polynomial on [lo,1] that is at_lo at lo and, summed in floats, exactly 1 at 1."""
+    lo, at_lo = mp.mpf(lo), mp.mpf(at_lo)
+    line = [(at_lo - lo) / (1 - lo), (1 - at_lo) / (1 - lo)]
     def target(x):
         x = nudged(x, lo, 1)
-        return ((curve(x) - 1) / (x - 1) - slope) / (x - lo)
+        return (curve(x) - line[0] - line[1] * x) / ((1 - x) * (x - lo))
     def weight(x):
         return (1 - x) * (x - lo) / (curve(x) if relative else 1)
-    error, r = remez(target, weight, range(power - 1), float(lo), 1.0)
-    q = np.zeros(power)                         # slope + (x - lo) R(x), multiplied out
-    q[0] = float(slope)
-    q[1:] += r
-    q[:-1] -= float(lo) * np.array(r)
-    return error, list(q)
+    error, r = remez(target, weight, range(degree - 1), float(lo), 1.0)
+    c = np.polynomial.polynomial.polymul(r, [-float(lo), 1 + float(lo), -1.0])
+    c[:2] += [float(v) for v in line]
+    total = np.float32(0)
+    for v in reversed(c[1:]):
+        total = np.float32(v) + total
+    c[0] = np.float32(1) - total
+    return error, list(c)
 
 
 def srgb():
-    """Above the linear piece: decoding as a polynomial of the code, encoding of the fourth root."""
+    """Above the linear piece: decoding as a polynomial of the code, encoding of the fourth root.
+
+    The curves start by so much above the linear piece that rounding cannot make a step down."""
     print("encoding pieces cross at", mp.nstr(mp.findroot(
         lambda x: 1.055 * x**(1 / mp.mpf(2.4)) - 0.055 - 12.92 * x, 0.00313), 10))
     knee = mp.mpf("0.04045")
-    show("decode, relative, Q of degree 4",
+    show("decode, relative, degree 5",
          pinned(lambda c: ((c + mp.mpf("0.055")) / mp.mpf("1.055"))**mp.mpf("2.4"), knee,
-                knee / mp.mpf("12.92"), 5, True))
-    knee = mp.mpf("0.0031308")
-    show("encode, absolute, Q of degree 3",
+                knee / mp.mpf("12.92") * mp.mpf("1.00003"), 5, True))
+    knee = mp.mpf("0.0031306")
+    show("encode, absolute, degree 4",
          pinned(lambda u: mp.mpf("1.055") * u**(4 / mp.mpf("2.4")) - mp.mpf("0.055"),
-                knee**0.25, knee * mp.mpf("12.92"), 4, False))
+                knee**0.25, knee * mp.mpf("12.92") * mp.mpf("1.000005"), 4, False))
 
 
 def observer(name):
