@@ -28,12 +28,27 @@
  *     HDRP_HLSL the compiler reads HLSL             default: set where DXC is recognised
  *
  * >>index of the functions, without hdrp_ (written by tools/api_check.py --write)
- *   language layer: sqrt sin cos tan asin acos atan2 exp exp2 log log2 pow floor abs f32_from_u32
- *       u32_from_f32 bits_from_f32 f32_from_bits min max clamp saturate lerp sq sign_not_zero
+ *   language layer: sqrt rsqrt sin cos tan asin acos atan2 exp exp2 log log2 pow floor abs
+ *       f32_from_u32 u32_from_f32 reverse_bits bits_from_f32 f32_from_bits min max clamp saturate
+ *       lerp sq sign_not_zero
  *   vectors: v2_make v3_make v4_make u32x4_make v2_add v2_sub v2_scale v2_dot v3_splat v3_add
  *       v3_sub v3_mul v3_scale v3_mad v3_neg v3_lerp v3_max v3_saturate v3_max_component v3_dot
  *       v3_cross v3_length v3_normalize v4_mul v4_dot v3_from_v4 v4_from_v3 normalize_or
  *       basis_from_normal
+ *   fast math: acos_fast atan2_fast exp2_fast log2_fast pow_fast rsqrt_fast sincos sincos_fast
+ *   colour: linear_from_srgb srgb_from_linear linear_from_srgb_fast srgb_from_linear_fast
+ *       v3_linear_from_srgb v3_srgb_from_linear v3_linear_from_srgb_fast v3_srgb_from_linear_fast
+ *       luminance
+ *   colour temperature: rec709_from_kelvin rec709_from_kelvin_fast
+ *   surface gradients: surface_frame_from_vertex surface_footprint_from_position basis_from_uv
+ *       normal_from_xy normal_from_rgb normal_from_ag derivative_from_normal
+ *       derivative_from_heights surface_gradient_from_derivative surface_gradient_from_normal
+ *       surface_gradient_from_volume surface_gradient_from_height triplanar_weights
+ *       surface_gradient_from_triplanar normal_from_surface_gradient_unclamped
+ *       normal_from_surface_gradient
+ *   sampling: unit_from_u32 hash1 hash2 hash3 hammersley r2 fibonacci_disk fibonacci_sphere
+ *       disk_concentric disk_polar hemisphere_cosine hemisphere_cosine_pdf hemisphere_uniform
+ *       sphere_uniform
  *   algorithm layer: result_string
  * >>end
  */
@@ -796,14 +811,14 @@ HDRP_FN float hdrp_rsqrt_fast(float x)
 }
 
 struct hdrp_sincos_result {
-    float sine;
-    float cosine;
+    float sine;   /* [-1.0000012,1.0000012] */
+    float cosine; /* [-1.0000012,1.0000012] */
 };
 HDRP_TYPEDEF(hdrp_sincos_result)
 
 /** Sine and cosine in nearly full precision, also where the built-ins have little.
  *  x        any     [rad]
- *  returns  [-1,1]  both
+ *  returns  [-1,1]
  *  edges    sine(-0) = -0; beyond +-8192 [rad] as at the end of the range; NaN as -8192
  *  error    <= 1.1e-7 absolute for |x| <= 8192  @accuracy sincos
  *  source   Cody and Waite 1980, "Software Manual for the Elementary Functions", for the reduction
@@ -828,7 +843,7 @@ HDRP_FN hdrp_sincos_result hdrp_sincos(float x)
 
 /** Sine and cosine by half turns: two short polynomials and no exchange of the two.
  *  x        any  [rad]
- *  returns  [-1.0000012,1.0000012]  both
+ *  returns  [-1.0000012,1.0000012]
  *  edges    beyond +-8192 [rad] as at the end of the range; NaN as -8192
  *  error    <= 1.2e-6 absolute in the sine    @accuracy sincos_fast_sine
  *  error    <= 9e-6 absolute in the cosine    @accuracy sincos_fast_cosine
@@ -928,28 +943,48 @@ HDRP_FN float hdrp_srgb_from_linear_fast(float x)
     return hdrp_i_select(curved, c * HDRP_SRGB_SLOPE, p);
 }
 
-/** hdrp_linear_from_srgb of each component. */
+/** Linear colour of an sRGB-coded one.
+ *  srgb     [0,1e16]  code
+ *  returns  [0,inf)   linear
+ *  edges    as hdrp_linear_from_srgb
+ *  error    none: delegates to hdrp_linear_from_srgb
+ *  source   IEC 61966-2-1:1999, section 5.2 */
 HDRP_FN hdrp_v3 hdrp_v3_linear_from_srgb(hdrp_v3 srgb)
 {
     return hdrp_v3_make(hdrp_linear_from_srgb(srgb.x), hdrp_linear_from_srgb(srgb.y),
                         hdrp_linear_from_srgb(srgb.z));
 }
 
-/** hdrp_srgb_from_linear of each component. */
+/** sRGB code of a linear colour.
+ *  v        [0,FLT_MAX]  linear
+ *  returns  [0,1.3e16]   code
+ *  edges    as hdrp_srgb_from_linear
+ *  error    none: delegates to hdrp_srgb_from_linear
+ *  source   IEC 61966-2-1:1999, section 5.2 */
 HDRP_FN hdrp_v3 hdrp_v3_srgb_from_linear(hdrp_v3 v)
 {
     return hdrp_v3_make(hdrp_srgb_from_linear(v.x), hdrp_srgb_from_linear(v.y),
                         hdrp_srgb_from_linear(v.z));
 }
 
-/** hdrp_linear_from_srgb_fast of each component. */
+/** Linear colour of an sRGB-coded one by hdrp_linear_from_srgb_fast.
+ *  srgb     any    code; limited to [0,1]
+ *  returns  [0,1]  linear
+ *  edges    as hdrp_linear_from_srgb_fast
+ *  error    none: delegates to hdrp_linear_from_srgb_fast
+ *  source   IEC 61966-2-1:1999, section 5.2 */
 HDRP_FN hdrp_v3 hdrp_v3_linear_from_srgb_fast(hdrp_v3 srgb)
 {
     return hdrp_v3_make(hdrp_linear_from_srgb_fast(srgb.x), hdrp_linear_from_srgb_fast(srgb.y),
                         hdrp_linear_from_srgb_fast(srgb.z));
 }
 
-/** hdrp_srgb_from_linear_fast of each component. */
+/** sRGB code of a linear colour by hdrp_srgb_from_linear_fast.
+ *  v        any    linear; limited to [0,1]
+ *  returns  [0,1]  code
+ *  edges    as hdrp_srgb_from_linear_fast
+ *  error    none: delegates to hdrp_srgb_from_linear_fast
+ *  source   IEC 61966-2-1:1999, section 5.2 */
 HDRP_FN hdrp_v3 hdrp_v3_srgb_from_linear_fast(hdrp_v3 v)
 {
     return hdrp_v3_make(hdrp_srgb_from_linear_fast(v.x), hdrp_srgb_from_linear_fast(v.y),
@@ -1072,8 +1107,8 @@ HDRP_FN hdrp_v3 hdrp_rec709_from_kelvin_fast(float kelvin)
 
 struct hdrp_surface_frame {
     hdrp_v3 normal;    /* unit */
-    hdrp_v3 tangent;   /* in units of the vertex normal's interpolated length, as is bitangent */
-    hdrp_v3 bitangent; /* handedness * cross(normal, vertex tangent) */
+    hdrp_v3 tangent;   /* finite, in units of the length of the interpolated vertex normal */
+    hdrp_v3 bitangent; /* finite, handedness * cross(normal, vertex tangent) */
 };
 HDRP_TYPEDEF(hdrp_surface_frame)
 
@@ -1081,8 +1116,8 @@ HDRP_TYPEDEF(hdrp_surface_frame)
  *  normal      [-1e9,1e9]  interpolated vertex normal
  *  tangent     [-1e9,1e9]  interpolated vertex tangent
  *  handedness  any         negative: the bitangent is -cross(normal, tangent)
- *  returns     unit normal; all three vectors scaled alike, as MikkTSpace asks, so that a resolved
- *              gradient is exactly the classical normalize(tangent x + bitangent y + normal z)
+ *  returns     valid  the three vectors, scaled alike to make the normal unit: what a gradient
+ *              resolves to is then MikkTSpace's normalize(tangent x + bitangent y + normal z)
  *  edges       a normal shorter than 1e-18 gives zero tangents, so that the surface stays flat, and
  *              +Z where it has no direction at all; handedness 0 and NaN count as positive
  *  error       <= 3e-7 relative to the length of normal and tangent  @accuracy surface_frame
@@ -1101,11 +1136,12 @@ HDRP_FN hdrp_surface_frame hdrp_surface_frame_from_vertex(hdrp_v3 normal, hdrp_v
     return f;
 }
 
+/* Made by hdrp_surface_footprint_from_position. */
 struct hdrp_surface_footprint {
     hdrp_v3 normal;  /* unit */
-    hdrp_v3 sigma_x; /* change of position to the next pixel in x, projected on the tangent plane */
-    hdrp_v3 sigma_y; /* likewise in y */
-    float area;      /* signed, of the two; 0 where they span none */
+    hdrp_v3 sigma_x; /* finite, [m] change of position to the next pixel on the tangent plane */
+    hdrp_v3 sigma_y; /* finite, [m] likewise in y */
+    float area;      /* finite, [m^2] signed, of the two; 0 where they span none */
 };
 HDRP_TYPEDEF(hdrp_surface_footprint)
 
@@ -1117,7 +1153,7 @@ HDRP_TYPEDEF(hdrp_surface_footprint)
  *  edges    two derivatives that are parallel within 1e-6, shorter than 1e-10, above 1e9 or not
  *           finite span no area: all zero, from which follow zero tangents and a flat surface
  *  error    <= 3e-7 relative in area, to the product of both lengths  @accuracy surface_footprint
- *  source   Mikkelsen 2010, "Bump Mapping Unparametrized Surfaces on the GPU", listing 1
+ *  source   Mikkelsen 2010, "Bump Mapping Unparametrized Surfaces on the GPU"
  *  note     position relative to the camera, else its derivative is rounding noise */
 HDRP_FN hdrp_surface_footprint hdrp_surface_footprint_from_position(hdrp_v3 normal, hdrp_v3 dp_dx,
                                                                     hdrp_v3 dp_dy)
@@ -1132,7 +1168,8 @@ HDRP_FN hdrp_surface_footprint hdrp_surface_footprint_from_position(hdrp_v3 norm
     f.sigma_x = x;
     f.sigma_y = y;
     f.area = area;
-    if (!(area * area > 1e-12f * xx * yy && area * area < HDRP_FLT_MAX)) {
+    if (!(area * area > 1e-12f * xx * yy && hdrp_min(xx, yy) > 1e-20f &&
+          area * area < HDRP_FLT_MAX)) {
         f.sigma_x = hdrp_v3_splat(0.0f);
         f.sigma_y = hdrp_v3_splat(0.0f);
         f.area = 0.0f;
@@ -1144,8 +1181,8 @@ HDRP_FN hdrp_surface_footprint hdrp_surface_footprint_from_position(hdrp_v3 norm
  *  footprint  valid  of the same pixel
  *  duv_dx     any    screen derivative of the coordinates; the one in which green grows second
  *  duv_dy     any    likewise in y
- *  returns    unit vectors orthogonal to the normal and to each other: tangent along growing
- *             u (.x), bitangent on the side of growing v (.y), on both faces and for mirrored UVs
+ *  returns    a tangent along growing u (.x) and a bitangent on the side of growing v (.y), on both
+ *             faces and for mirrored UVs; unit, orthogonal to the normal and to each other
  *  edges      coordinates whose lines are parallel within 1e-6, or change by less than 1e-19 or
  *             more than 1e18 a pixel, and a footprint without area: zero vectors, so that the
  *             surface stays flat
@@ -1305,7 +1342,7 @@ HDRP_FN hdrp_v3 hdrp_surface_gradient_from_volume(hdrp_v3 n, hdrp_v3 gradient)
  *  edges      a footprint without area gives flat
  *  error      <= 3e-6 relative against the gradient of a plane wave, where the derivatives are no
  *             closer to parallel than 0.1 rad  @accuracy surface_gradient_height
- *  source     Mikkelsen 2010, "Bump Mapping Unparametrized Surfaces on the GPU", listing 1
+ *  source     Mikkelsen 2010, "Bump Mapping Unparametrized Surfaces on the GPU"
  *  note       blocky at 2x2 pixels, as screen derivatives of a height are; prefer the gradient */
 HDRP_FN hdrp_v3 hdrp_surface_gradient_from_height(hdrp_surface_footprint footprint, float dh_dx,
                                                   float dh_dy)
@@ -1328,7 +1365,7 @@ HDRP_FN float hdrp_i_triplanar_weight(float q, float sharpness)
  *  returns    [0,1]  weight of the x, y and z plane; the sum is 1
  *  edges      on an axis exactly 1 and two 0; a normal without direction gives three equal weights
  *  error      <= 2e-6 absolute  @accuracy triplanar_weights
- *  source     Golus 2017, "Normal Mapping for a Triplanar Shader" (powers of the components) */
+ *  source     Golus 2017, "Normal Mapping for a Triplanar Shader", on powers of the components */
 HDRP_FN hdrp_v3 hdrp_triplanar_weights(hdrp_v3 n, float sharpness)
 {
     hdrp_v3 u = hdrp_normalize_or(n, hdrp_v3_splat(1.0f));
@@ -1385,7 +1422,7 @@ HDRP_FN hdrp_v3 hdrp_normal_from_surface_gradient_unclamped(hdrp_v3 n, hdrp_v3 g
  *            HDRP_SURFACE_COSINE_MIN where it would lie below
  *  error     <= 2e-7 absolute, per component, for gradients in the tangent plane up to 1e4
  *            @accuracy normal_from_surface_gradient
- *  source    Mikkelsen 2010, "Bump Mapping Unparametrized Surfaces on the GPU", equation 4
+ *  source    Mikkelsen 2010, "Bump Mapping Unparametrized Surfaces on the GPU"
  *  note      only a gradient along n can take it below: the interpolated tangents of a coarse mesh
  *            have such a part, as has the classical tangent-space transform */
 HDRP_FN hdrp_v3 hdrp_normal_from_surface_gradient(hdrp_v3 n, hdrp_v3 gradient)

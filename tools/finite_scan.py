@@ -134,7 +134,8 @@ def c_float(x):
 
 
 def c_double(x):
-    return c_float(x).rstrip("f") if math.isfinite(x) else c_float(x)
+    # INFINITY is a float, whose silent promotion clang warns of
+    return c_float(x).rstrip("f") if math.isfinite(x) else f"(double){c_float(x)}"
 
 
 class Writer:

@@ -139,6 +139,20 @@ static void sincos_keeps_small_angles_and_the_unit_circle(void** state)
     assert_true(r.sine == 0.0f && r.cosine == 1.0f);
     assert_true(hdrp_sincos(1e-30f).sine == 1e-30f && hdrp_sincos(-1e-45f).sine == -1e-45f);
     assert_true(hdrp_sincos_fast(1e-30f).sine == 1e-30f && hdrp_sincos_fast(0.0f).cosine == 1.0f);
+    static const float quarter[4][2] = {{0.0f, 1.0f}, {1.0f, 0.0f}, {0.0f, -1.0f}, {-1.0f, 0.0f}};
+    for (int i = -8; i < 8; ++i) {
+        r = hdrp_sincos((float)i * HDRP_HALF_PI);
+        hdrp_sincos_result fast = hdrp_sincos_fast((float)i * HDRP_HALF_PI);
+        const float* expected = quarter[i & 3];
+        assert_true(fabsf(r.sine - expected[0]) < 1e-6f && fabsf(r.cosine - expected[1]) < 1e-6f);
+        assert_true(fabsf(fast.sine - expected[0]) < 1e-5f);
+        assert_true(fabsf(fast.cosine - expected[1]) < 1e-5f);
+    }
+    for (int i = -7; i <= 7; ++i) { /* all quadrants, away from the axes */
+        r = hdrp_sincos((float)i);
+        assert_true(fabs((double)r.sine - sin((double)i)) < 1e-6);
+        assert_true(fabs((double)r.cosine - cos((double)i)) < 1e-6);
+    }
     for (int i = -8192; i <= 8192; ++i) {
         r = hdrp_sincos((float)i * 0.9999f);
         assert_true(fabsf(r.sine) <= 1.0f && fabsf(r.cosine) <= 1.0f);

@@ -46,6 +46,15 @@ static uint32_t last_of_three(uint32_t u)
     return hdrp_hash3(5u, 6u, u);
 }
 
+/* Computed from the definition in another language. */
+static void hashes_are_the_same_everywhere(void** state)
+{
+    (void)state;
+    assert_int_equal(hdrp_hash1(0u), 0xc4631032u);
+    assert_int_equal(hdrp_hash2(1u, 2u), 0xceadc62u);
+    assert_int_equal(hdrp_hash3(1u, 2u, 3u), 0x32c55f92u);
+}
+
 /* How far from one half the probability is that flipping bit i of the input flips bit j. */
 static double avalanche_bias(uint32_t (*hash)(uint32_t u))
 {
@@ -457,6 +466,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reversed_bits_are_the_mirror_image),
         cmocka_unit_test(the_unit_interval_excludes_one),
+        cmocka_unit_test(hashes_are_the_same_everywhere),
         cmocka_unit_test(each_bit_of_a_hash_depends_on_every_bit_of_its_input),
         cmocka_unit_test(hashes_collide_as_rarely_as_random_numbers),
         cmocka_unit_test(hashes_of_neighbours_fill_the_interval_evenly),

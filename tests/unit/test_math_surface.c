@@ -163,12 +163,13 @@ static void degenerate_derivatives_keep_the_surface_flat(void** state)
     hdrp_v3 pairs[][2] = {{zero, zero},
                           {x_axis, zero},
                           {odd, hdrp_v3_scale(odd, -3.0f)},
+                          {hdrp_v3_make(0.1f, 0.3f, 0.0f), hdrp_v3_make(0.3f, 0.9f, 0.0f)},
                           {z_axis, z_axis},
                           {x_axis, z_axis},
                           {huge, x_axis},
                           {hdrp_v3_make(NAN, 0.0f, 0.0f), y_axis},
                           {hdrp_v3_make(INFINITY, 0.0f, 0.0f), y_axis}};
-    for (int i = 0; i < 8; ++i) {
+    for (int i = 0; i < 9; ++i) {
         hdrp_surface_footprint f =
             hdrp_surface_footprint_from_position(z_axis, pairs[i][0], pairs[i][1]);
         hdrp_basis basis =
