@@ -447,5 +447,7 @@ void rd_trace_layers(const rd_trace* t, const rd_ray* ray, rd_layers* layers)
     p.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     q.gather = layers;
     rtcIntersect1(t->layers, &q.base, &p);
-    qsort(layers->hits, layers->count, sizeof *layers->hits, compare_hits);
+    if (layers->count > 1) {
+        qsort(layers->hits, layers->count, sizeof *layers->hits, compare_hits);
+    }
 }
