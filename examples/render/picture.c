@@ -50,6 +50,7 @@ static bool write_png(const char* path, int width, int height, const float* film
     if (!rgb) {
         return rd_fail(report, path, "out of memory");
     }
+#pragma omp parallel for schedule(static)
     for (size_t i = 0; i < pixels; ++i) {
         for (size_t c = 0; c < 3; ++c) {
             rgb[i * 3 + c] =

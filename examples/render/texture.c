@@ -5,12 +5,13 @@
 #include <string.h>
 
 /* Probes along the longer axis of a footprint; what is longer still is blurred. */
-#define MAX_PROBES 8
+#define MAX_PROBES 4
 /* Codes are looked up by the square root of the linear value, which is nearly the code. */
 #define ENCODE_STEPS 4096
 
 /* Filled by rd_textures_prepare before its jobs start; constant from then on. */
 static float linear_from_code[256];
+static float unorm_from_code[256];
 static unsigned char code_from_root[ENCODE_STEPS + 1];
 
 static float linear_from_srgb(float s)
@@ -27,6 +28,7 @@ static void fill_tables(void)
 {
     for (int i = 0; i < 256; ++i) {
         linear_from_code[i] = linear_from_srgb((float)i / 255.0f);
+        unorm_from_code[i] = (float)i / 255.0f;
     }
     for (int i = 0; i <= ENCODE_STEPS; ++i) {
         float root = (float)i / ENCODE_STEPS;
@@ -235,40 +237,45 @@ static int wrap_index(int i, int n, rd_wrap wrap)
     return i;
 }
 
-static hdrp_v4 fetch(const rd_texture* t, const unsigned char* row, int x)
+/* One texel times its weight, added up. */
+static void add_texel(const float* decode, const unsigned char* texel, float weight, float sum[4])
 {
-    const unsigned char* p = row + (size_t)x * 4;
-    const float k = 1.0f / 255.0f;
-    if (t->is_srgb) {
-        return hdrp_v4_make(linear_from_code[p[0]], linear_from_code[p[1]], linear_from_code[p[2]],
-                            (float)p[3] * k);
+    sum[0] += decode[texel[0]] * weight;
+    sum[1] += decode[texel[1]] * weight;
+    sum[2] += decode[texel[2]] * weight;
+    sum[3] += unorm_from_code[texel[3]] * weight;
+}
+
+static hdrp_v4 sample_level(const rd_texture* t, int level, hdrp_v2 uv)
+{
+    const float* decode = t->is_srgb ? linear_from_code : unorm_from_code;
+    int w = t->width >> level > 1 ? t->width >> level : 1;
+    int h = t->height >> level > 1 ? t->height >> level : 1;
+    float x = wrap_coordinate(uv.x, t->wrap_u) * (float)w - 0.5f;
+    float y = wrap_coordinate(uv.y, t->wrap_v) * (float)h - 0.5f;
+    /* x is above -1: adding 1 makes truncation the floor. */
+    int left = (int)(x + 1.0f) - 1, top = (int)(y + 1.0f) - 1;
+    float tx = x - (float)left, ty = y - (float)top;
+    int x0 = wrap_index(left, w, t->wrap_u), x1 = wrap_index(left + 1, w, t->wrap_u);
+    int y0 = wrap_index(top, h, t->wrap_v), y1 = wrap_index(top + 1, h, t->wrap_v);
+    const unsigned char* row0 = t->level[level] + (size_t)y0 * (size_t)w * 4;
+    const unsigned char* row1 = t->level[level] + (size_t)y1 * (size_t)w * 4;
+    float sum[4] = {0.0f, 0.0f, 0.0f, 0.0f};
+    if (t->is_nearest && level == 0) {
+        tx = tx < 0.5f ? 0.0f : 1.0f;
+        ty = ty < 0.5f ? 0.0f : 1.0f;
     }
-    return hdrp_v4_make((float)p[0] * k, (float)p[1] * k, (float)p[2] * k, (float)p[3] * k);
+    add_texel(decode, row0 + (size_t)x0 * 4, (1.0f - tx) * (1.0f - ty), sum);
+    add_texel(decode, row0 + (size_t)x1 * 4, tx * (1.0f - ty), sum);
+    add_texel(decode, row1 + (size_t)x0 * 4, (1.0f - tx) * ty, sum);
+    add_texel(decode, row1 + (size_t)x1 * 4, tx * ty, sum);
+    return hdrp_v4_make(sum[0], sum[1], sum[2], sum[3]);
 }
 
 static hdrp_v4 mix(hdrp_v4 a, hdrp_v4 b, float t)
 {
     return hdrp_v4_make(a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t, a.z + (b.z - a.z) * t,
                         a.w + (b.w - a.w) * t);
-}
-
-static hdrp_v4 sample_level(const rd_texture* t, int level, hdrp_v2 uv)
-{
-    int w = t->width >> level > 1 ? t->width >> level : 1;
-    int h = t->height >> level > 1 ? t->height >> level : 1;
-    float x = wrap_coordinate(uv.x, t->wrap_u) * (float)w - 0.5f;
-    float y = wrap_coordinate(uv.y, t->wrap_v) * (float)h - 0.5f;
-    float fx = floorf(x), fy = floorf(y);
-    int x0 = wrap_index((int)fx, w, t->wrap_u), x1 = wrap_index((int)fx + 1, w, t->wrap_u);
-    int y0 = wrap_index((int)fy, h, t->wrap_v), y1 = wrap_index((int)fy + 1, h, t->wrap_v);
-    const unsigned char* row0 = t->level[level] + (size_t)y0 * (size_t)w * 4;
-    const unsigned char* row1 = t->level[level] + (size_t)y1 * (size_t)w * 4;
-    float tx = x - fx, ty = y - fy;
-    if (t->is_nearest && level == 0) {
-        return fetch(t, ty < 0.5f ? row0 : row1, tx < 0.5f ? x0 : x1);
-    }
-    return mix(mix(fetch(t, row0, x0), fetch(t, row0, x1), tx),
-               mix(fetch(t, row1, x0), fetch(t, row1, x1), tx), ty);
 }
 
 static hdrp_v4 sample_trilinear(const rd_texture* t, hdrp_v2 uv, float lod)

@@ -39,7 +39,7 @@ bool rd_textures_prepare(rd_texture_set* set, rd_report* report);
 void rd_textures_free(rd_texture_set* set);
 
 /* Linear RGBA at uv (the origin is the upper left corner, as in glTF), filtered for a footprint
- * with the given derivatives: trilinear, with up to 8 probes along the longer axis. */
+ * with the given derivatives: trilinear, with up to 4 probes along the longer axis. */
 hdrp_v4 rd_texture_sample(const rd_texture* t, hdrp_v2 uv, hdrp_v2 d_dx, hdrp_v2 d_dy);
 
 /* Bilinear at the finest level: for alpha tests, where averages would change the coverage. */
