@@ -179,9 +179,9 @@ static bool set_frames(const argument* a)
 
 static bool set_seed(const argument* a)
 {
-    int v;
+    int v = 0;
     bool ok = read_int(a, 0, 2147483647, &v);
-    a->options->seed = ok ? (uint32_t)v : 0u;
+    a->options->seed = (uint32_t)v;
     return ok;
 }
 
