@@ -1,0 +1,175 @@
+/* acc_math_fast.c - accuracy of the fast math of hdrp_math.h against libm in double precision.
+ * SPDX-License-Identifier: MIT */
+#include "accuracy.h"
+
+#include "hdrp_math.h"
+
+/* Strides through the bit patterns of floats: odd, so that mantissas vary, and about 5e5 steps. */
+#define STRIDE 4099u
+
+static void rsqrt_error(acc* a)
+{
+    for (uint32_t u = 1u; u < 0x7f800000u; u += STRIDE) {
+        float x = hdrp_f32_from_bits(u);
+        ACC_ADD(a, acc_relative((double)hdrp_rsqrt(x), 1.0 / sqrt((double)x)), "x = %.9g",
+                (double)x);
+    }
+}
+
+static void rsqrt_fast_error(acc* a)
+{
+    /* Every mantissa of two octaves: the others repeat them. */
+    for (uint32_t u = 0x3f800000u; u < 0x40800000u; u += 31u) {
+        float x = hdrp_f32_from_bits(u);
+        ACC_ADD(a, acc_relative((double)hdrp_rsqrt_fast(x), 1.0 / sqrt((double)x)), "x = %.9g",
+                (double)x);
+    }
+    for (uint32_t u = 0x00800000u; u < 0x7f800000u; u += STRIDE) {
+        float x = hdrp_f32_from_bits(u);
+        ACC_ADD(a, acc_relative((double)hdrp_rsqrt_fast(x), 1.0 / sqrt((double)x)), "x = %.9g",
+                (double)x);
+    }
+}
+
+static float acos_input(acc* a, int i)
+{
+    double magnitude = i % 2 ? acc_uniform(a, 0.0, 1.0) : 1.0 - acc_log_uniform(a, 1e-8, 1.0);
+    return (float)magnitude;
+}
+
+static void acos_fast_error(acc* a)
+{
+    for (int i = 0; i < 400000; ++i) {
+        float x = acos_input(a, i) * (i % 3 ? 1.0f : -1.0f);
+        ACC_ADD(a, fabs((double)hdrp_acos_fast(x) - acos((double)x)), "x = %.9g", (double)x);
+    }
+}
+
+static void acos_fast_relative_error(acc* a)
+{
+    for (int i = 0; i < 400000; ++i) {
+        float x = acos_input(a, i);
+        ACC_ADD(a, acc_relative((double)hdrp_acos_fast(x), acos((double)x)), "x = %.9g", (double)x);
+    }
+}
+
+static void atan2_fast_error(acc* a)
+{
+    for (int i = 0; i < 400000; ++i) {
+        double angle = acc_uniform(a, -3.2, 3.2), radius = acc_log_uniform(a, 1e-36, 3e38);
+        float x = (float)(cos(angle) * radius), y = (float)(sin(angle) * radius);
+        ACC_ADD(a, fabs((double)hdrp_atan2_fast(y, x) - atan2((double)y, (double)x)),
+                "y = %.9g, x = %.9g", (double)y, (double)x);
+    }
+}
+
+static void atan2_fast_relative_error(acc* a)
+{
+    for (int i = 0; i < 400000; ++i) {
+        float x = (float)acc_log_uniform(a, 1e-3, 1e3);
+        float y = x * (float)(acc_log_uniform(a, 1e-9, 1e6) * (i % 2 ? 1.0 : -1.0));
+        ACC_ADD(a, acc_relative((double)hdrp_atan2_fast(y, x), atan2((double)y, (double)x)),
+                "y = %.9g, x = %.9g", (double)y, (double)x);
+    }
+}
+
+static void exp2_fast_error(acc* a)
+{
+    for (int i = 0; i < 800000; ++i) {
+        float x =
+            i % 2 ? (float)acc_uniform(a, -126.0, 127.9999) : (float)acc_uniform(a, -1.5, 1.5);
+        ACC_ADD(a, acc_relative((double)hdrp_exp2_fast(x), exp2((double)x)), "x = %.9g", (double)x);
+    }
+}
+
+static void log2_fast_error(acc* a)
+{
+    for (uint32_t u = 1u; u < 0x7f800000u; u += STRIDE) {
+        float x = hdrp_f32_from_bits(u);
+        ACC_ADD(a, acc_relative((double)hdrp_log2_fast(x), log2((double)x)), "x = %.9g", (double)x);
+    }
+    for (int i = 0; i < 400000; ++i) { /* around 1, where the logarithm vanishes */
+        float x = (float)(1.0 + acc_log_uniform(a, 1e-7, 1.0) * (i % 2 ? 1.0 : -0.5));
+        ACC_ADD(a, acc_relative((double)hdrp_log2_fast(x), log2((double)x)), "x = %.9g", (double)x);
+    }
+}
+
+static void pow_fast_error(acc* a)
+{
+    for (int i = 0; i < 400000; ++i) {
+        float x = (float)acc_log_uniform(a, 1.5e-45, 3.4e38);
+        double l = log2((double)x), exponent = acc_uniform(a, -125.9, 127.9);
+        float y = (float)(exponent / l);
+        double reference = pow((double)x, (double)y);
+        if (reference > 1.2e-38 && reference < 3.4e38) {
+            ACC_ADD(a, acc_relative((double)hdrp_pow_fast(x, y), reference), "x = %.9g, y = %.9g",
+                    (double)x, (double)y);
+        }
+    }
+}
+
+static void pow_fast_colour_error(acc* a)
+{
+    for (int i = 0; i < 400000; ++i) {
+        float x = (float)acc_uniform(a, 1e-3, 1.0), y = (float)acc_uniform(a, 0.3, 2.5);
+        ACC_ADD(a, acc_relative((double)hdrp_pow_fast(x, y), pow((double)x, (double)y)),
+                "x = %.9g, y = %.9g", (double)x, (double)y);
+    }
+}
+
+/* Small angles, the whole range, and floats next to multiples of a quarter turn. */
+static float angle(acc* a, int i)
+{
+    double x = acc_uniform(a, -8192.0, 8192.0);
+    if (i % 3 == 1) {
+        x = acc_uniform(a, -7.0, 7.0);
+    } else if (i % 3 == 2) {
+        x = floor(x * 0.63) * 1.57079632679489661923 + acc_uniform(a, -1e-3, 1e-3);
+    }
+    return (float)x;
+}
+
+static void sincos_error(acc* a)
+{
+    for (int i = 0; i < 500000; ++i) {
+        float x = angle(a, i);
+        hdrp_sincos_result r = hdrp_sincos(x);
+        ACC_ADD(
+            a, fmax(fabs((double)r.sine - sin((double)x)), fabs((double)r.cosine - cos((double)x))),
+            "x = %.9g", (double)x);
+    }
+}
+
+static void sincos_fast_sine_error(acc* a)
+{
+    for (int i = 0; i < 500000; ++i) {
+        float x = angle(a, i);
+        ACC_ADD(a, fabs((double)hdrp_sincos_fast(x).sine - sin((double)x)), "x = %.9g", (double)x);
+    }
+}
+
+static void sincos_fast_cosine_error(acc* a)
+{
+    for (int i = 0; i < 500000; ++i) {
+        float x = angle(a, i);
+        ACC_ADD(a, fabs((double)hdrp_sincos_fast(x).cosine - cos((double)x)), "x = %.9g",
+                (double)x);
+    }
+}
+
+const acc_entry acc_math_fast[] = {
+    {"rsqrt", rsqrt_error},
+    {"rsqrt_fast", rsqrt_fast_error},
+    {"acos_fast", acos_fast_error},
+    {"acos_fast_relative", acos_fast_relative_error},
+    {"atan2_fast", atan2_fast_error},
+    {"atan2_fast_relative", atan2_fast_relative_error},
+    {"exp2_fast", exp2_fast_error},
+    {"log2_fast", log2_fast_error},
+    {"pow_fast", pow_fast_error},
+    {"pow_fast_colour", pow_fast_colour_error},
+    {"sincos", sincos_error},
+    {"sincos_fast_sine", sincos_fast_sine_error},
+    {"sincos_fast_cosine", sincos_fast_cosine_error},
+    {NULL, NULL},
+};
