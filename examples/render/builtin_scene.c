@@ -178,10 +178,10 @@ static void add_clear_coat(builder* b)
 /* Turned and brushed metal: the tangents run around the axis. */
 static void add_anisotropy(builder* b)
 {
-    static const hdrp_v2 disc[] = {{0.03f, 0.012f}, {0.42f, 0.012f}, {0.43f, 0.006f},
+    static const hdrp_v2 disc[] = {{0.03f, 0.012f},  {0.42f, 0.012f},  {0.43f, 0.006f},
                                    {0.43f, -0.006f}, {0.42f, -0.012f}, {0.0f, -0.012f}};
-    static const hdrp_v2 barrel[] = {{0.0f, 0.30f},   {0.20f, 0.30f},  {0.215f, 0.288f},
-                                     {0.235f, 0.15f}, {0.242f, 0.0f},  {0.235f, -0.15f},
+    static const hdrp_v2 barrel[] = {{0.0f, 0.30f},     {0.20f, 0.30f},  {0.215f, 0.288f},
+                                     {0.235f, 0.15f},   {0.242f, 0.0f},  {0.235f, -0.15f},
                                      {0.215f, -0.288f}, {0.20f, -0.30f}, {0.0f, -0.30f}};
     rd_material m = metal(hdrp_v3_make(0.91f, 0.92f, 0.92f), 0.38f);
     rd_material brass = metal(hdrp_v3_make(0.91f, 0.72f, 0.40f), 0.42f);
@@ -322,9 +322,10 @@ static void add_cloth(builder* b)
 /* Dents that shrink below a pixel: their normals have to widen the highlight. */
 static void add_hammered(builder* b)
 {
-    static const hdrp_v2 vase[] = {{0.0f, 0.60f},   {0.085f, 0.62f}, {0.095f, 0.60f}, {0.075f, 0.54f},
-                                   {0.070f, 0.48f}, {0.10f, 0.40f},  {0.16f, 0.31f},  {0.20f, 0.21f},
-                                   {0.205f, 0.14f}, {0.18f, 0.06f},  {0.13f, 0.0f},   {0.0f, 0.0f}};
+    static const hdrp_v2 vase[] = {{0.0f, 0.60f},   {0.085f, 0.62f}, {0.095f, 0.60f},
+                                   {0.075f, 0.54f}, {0.070f, 0.48f}, {0.10f, 0.40f},
+                                   {0.16f, 0.31f},  {0.20f, 0.21f},  {0.205f, 0.14f},
+                                   {0.18f, 0.06f},  {0.13f, 0.0f},   {0.0f, 0.0f}};
     rd_material m = metal(hdrp_v3_make(0.96f, 0.64f, 0.54f), 0.16f);
     set_slot(&m, RD_SLOT_NORMAL, RD_TEX_HAMMERED);
     place(b, rd_shape_lathe(vase, 12, 96, tiles(4.0f, 3.0f)),
@@ -399,8 +400,8 @@ static void add_bulb(builder* b)
 {
     rd_material m = dielectric(hdrp_v3_splat(0.8f), 0.3f);
     /* What a sphere of this size needs to look as bright as its intensity: I / (pi r^2). */
-    m.emission_nits = hdrp_v3_scale(hdrp_v3_make(1.0f, 0.72f, 0.42f),
-                                    2500.0f / (HDRP_PI * 0.06f * 0.06f));
+    m.emission_nits =
+        hdrp_v3_scale(hdrp_v3_make(1.0f, 0.72f, 0.42f), 2500.0f / (HDRP_PI * 0.06f * 0.06f));
     place(b, rd_shape_sphere(0.06f, 48, tiles(1.0f, 1.0f)), add_material(b, &m, "bulb"),
           translation(0.36f, 0.06f, 0.45f), "bulb");
 }
@@ -413,8 +414,7 @@ static void add_camera(builder* b)
     memset(&c, 0, sizeof c);
     snprintf(c.name, RD_NAME_MAX, "display");
     c.world_from_view.z = hdrp_v3_neg(forward);
-    c.world_from_view.x =
-        hdrp_v3_normalize(hdrp_v3_cross(forward, hdrp_v3_make(0.0f, 1.0f, 0.0f)));
+    c.world_from_view.x = hdrp_v3_normalize(hdrp_v3_cross(forward, hdrp_v3_make(0.0f, 1.0f, 0.0f)));
     c.world_from_view.y = hdrp_v3_cross(c.world_from_view.x, forward);
     c.world_from_view.t = eye;
     c.fov_y_rad = 0.48f;

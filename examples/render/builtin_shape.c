@@ -190,8 +190,7 @@ static void set_lathe_band(rd_mesh* m, const hdrp_v2* profile, uint32_t count, u
     }
 }
 
-rd_shape rd_shape_lathe(const hdrp_v2* profile, uint32_t count, uint32_t segments,
-                        hdrp_v2 uv_scale)
+rd_shape rd_shape_lathe(const hdrp_v2* profile, uint32_t count, uint32_t segments, hdrp_v2 uv_scale)
 {
     uint32_t bands = count - 1;
     rd_shape s = allocate(bands * 2 * (segments + 1), bands * segments * 2);
@@ -233,9 +232,9 @@ static hdrp_v3 compose(int first, float a, float b, float c)
 static void set_face_vertex(rd_mesh* m, uint32_t index, hdrp_v3 on_cube, hdrp_v3 core, float radius,
                             hdrp_v3 tangent, hdrp_v2 uv)
 {
-    hdrp_v3 inner = hdrp_v3_make(hdrp_clamp(on_cube.x, -core.x, core.x),
-                                 hdrp_clamp(on_cube.y, -core.y, core.y),
-                                 hdrp_clamp(on_cube.z, -core.z, core.z));
+    hdrp_v3 inner =
+        hdrp_v3_make(hdrp_clamp(on_cube.x, -core.x, core.x), hdrp_clamp(on_cube.y, -core.y, core.y),
+                     hdrp_clamp(on_cube.z, -core.z, core.z));
     hdrp_v3 n = hdrp_v3_normalize(hdrp_v3_sub(on_cube, inner));
     hdrp_v3 t = hdrp_v3_mad(tangent, n, -hdrp_v3_dot(tangent, n));
     m->positions[index] = hdrp_v3_mad(inner, n, radius);
@@ -333,7 +332,8 @@ static hdrp_v3 cove(float u, float v, const void* parameters)
         return hdrp_v3_make(x, p->bend + s - floor_length - arc, p->back);
     }
     angle = (s - floor_length) / p->bend;
-    return hdrp_v3_make(x, p->bend * (1.0f - cosf(angle)), p->back + p->bend * (1.0f - sinf(angle)));
+    return hdrp_v3_make(x, p->bend * (1.0f - cosf(angle)),
+                        p->back + p->bend * (1.0f - sinf(angle)));
 }
 
 rd_shape rd_shape_cove(float half_width, float front, float back, float bend, float height,
@@ -341,5 +341,6 @@ rd_shape rd_shape_cove(float half_width, float front, float back, float bend, fl
 {
     cove_parameters p = {half_width, front, back, bend, height};
     float length = front - back - bend + HDRP_HALF_PI * bend + height;
-    return rd_shape_grid(cove, &p, 8, 96, hdrp_v2_make(2.0f * half_width * uv_per_m, length * uv_per_m));
+    return rd_shape_grid(cove, &p, 8, 96,
+                         hdrp_v2_make(2.0f * half_width * uv_per_m, length * uv_per_m));
 }

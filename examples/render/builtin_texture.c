@@ -165,7 +165,7 @@ static float rock_fine_height(float u, float v)
 
 typedef struct recipe {
     int width, height;
-    texel_function texel;   /* either this */
+    texel_function texel;      /* either this */
     height_function height_of; /* or a normal map of this */
     bool is_srgb;
 } recipe;

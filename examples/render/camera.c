@@ -92,7 +92,8 @@ rd_camera rd_camera_frame(const rd_scene* scene, float fov_y_rad, int width_px, 
         b.low = hdrp_v3_splat(-1.0f);
         b.high = hdrp_v3_splat(1.0f);
     }
-    c = rd_camera_look_at(hdrp_v3_add(center(&b), from), center(&b), fov_y_rad, width_px, height_px);
+    c = rd_camera_look_at(hdrp_v3_add(center(&b), from), center(&b), fov_y_rad, width_px,
+                          height_px);
     for (int i = 0; i < 8; ++i) {
         hdrp_v3 corner = hdrp_v3_make(i & 1 ? b.high.x : b.low.x, i & 2 ? b.high.y : b.low.y,
                                       i & 4 ? b.high.z : b.low.z);

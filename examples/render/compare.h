@@ -5,12 +5,12 @@
 #include "image.h"
 
 typedef struct rd_difference {
-    uint64_t pixels;           /* covered in both: alpha > 0 */
-    double psnr_db;            /* of exposed, clipped, sRGB-encoded values; infinite if identical */
-    double relative_mean;      /* of |a - b| / max(a, b), over pixels, by luminance */
-    double relative_p999;      /* its 99.9th percentile */
+    uint64_t pixels;      /* covered in both: alpha > 0 */
+    double psnr_db;       /* of exposed, clipped, sRGB-encoded values; infinite if identical */
+    double relative_mean; /* of |a - b| / max(a, b), over pixels, by luminance */
+    double relative_p999; /* its 99.9th percentile */
     double relative_max;
-    double mean_ratio;         /* mean luminance of a over that of b */
+    double mean_ratio; /* mean luminance of a over that of b */
 } rd_difference;
 
 /* Both RGBA of the same size. `scale` is the exposure before clipping. */

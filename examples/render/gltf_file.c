@@ -35,8 +35,9 @@ static bool take_chunk(rd_gltf_file* f, size_t* at, int index, rd_report* report
     }
     *at += length;
     if ((index == 0) != (type == GLB_JSON)) {
-        return rd_fail(report, f->path, index == 0 ? "the first GLB chunk is not JSON"
-                                                   : "GLB has a second JSON chunk");
+        return rd_fail(report, f->path,
+                       index == 0 ? "the first GLB chunk is not JSON"
+                                  : "GLB has a second JSON chunk");
     }
     if (type == GLB_JSON) {
         f->json = (const char*)data;

@@ -9,14 +9,16 @@
 #include <cstring>
 #include <exception>
 
-namespace rd {
+namespace rd
+{
 
 bool fail(const importer& in, const std::string& where, const std::string& reason)
 {
     return rd_fail(in.report, in.file->path, "%s: %s", where.c_str(), reason.c_str());
 }
 
-namespace {
+namespace
+{
 
 using tinygltf::Model;
 using tinygltf::Node;
@@ -110,8 +112,8 @@ bool parse(const rd_gltf_file* file, Model* model, std::string* error)
                                            unsigned(file->size), directory);
     }
     const std::vector<unsigned char> bytes = without_bin(file);
-    return loader.LoadBinaryFromMemory(model, error, &warning, bytes.data(),
-                                       unsigned(bytes.size()), directory);
+    return loader.LoadBinaryFromMemory(model, error, &warning, bytes.data(), unsigned(bytes.size()),
+                                       directory);
 }
 
 /* >>scene graph */

@@ -11,7 +11,8 @@
 #include <string>
 #include <vector>
 
-namespace rd {
+namespace rd
+{
 
 struct importer {
     const rd_gltf_file* file;

@@ -6,8 +6,10 @@
 #include <cstdlib>
 #include <cstring>
 
-namespace rd {
-namespace {
+namespace rd
+{
+namespace
+{
 
 using tinygltf::ExtensionMap;
 using tinygltf::Material;
@@ -153,7 +155,8 @@ void set_slot(material_importer& m, rd_material* to, rd_slot slot, int texture, 
     }
 }
 
-template <class Info> void set_slot(material_importer& m, rd_material* to, rd_slot slot, const Info& i)
+template <class Info>
+void set_slot(material_importer& m, rd_material* to, rd_slot slot, const Info& i)
 {
     const auto found = i.extensions.find("KHR_texture_transform");
     set_slot(m, to, slot, i.index, i.texCoord,
@@ -172,7 +175,8 @@ void set_slot(material_importer& m, rd_material* to, rd_slot slot, const Value& 
     if (i.Has("extensions") && i.Get("extensions").Has("KHR_texture_transform")) {
         transform = i.Get("extensions").Get("KHR_texture_transform");
     }
-    set_slot(m, to, slot, int(number(i, "index", -1.0)), int(number(i, "texCoord", 0.0)), transform);
+    set_slot(m, to, slot, int(number(i, "index", -1.0)), int(number(i, "texCoord", 0.0)),
+             transform);
 }
 
 void read_core(material_importer& m, const Material& from, rd_material* to)
@@ -192,8 +196,9 @@ void read_core(material_importer& m, const Material& from, rd_material* to)
                      : from.alphaMode == "BLEND" ? RD_ALPHA_BLEND
                                                  : RD_ALPHA_OPAQUE;
     if (from.emissiveFactor.size() == 3) {
-        to->emission_nits = hdrp_v3_make(float(from.emissiveFactor[0]), float(from.emissiveFactor[1]),
-                                         float(from.emissiveFactor[2]));
+        to->emission_nits =
+            hdrp_v3_make(float(from.emissiveFactor[0]), float(from.emissiveFactor[1]),
+                         float(from.emissiveFactor[2]));
     }
     set_slot(m, to, RD_SLOT_BASE_COLOR, pbr.baseColorTexture);
     set_slot(m, to, RD_SLOT_METALLIC_ROUGHNESS, pbr.metallicRoughnessTexture);
@@ -259,8 +264,7 @@ void read_volume(material_importer& m, const Value& e, rd_material* to)
 
 void read_emissive_strength(material_importer&, const Value& e, rd_material* to)
 {
-    to->emission_nits =
-        hdrp_v3_scale(to->emission_nits, number_f(e, "emissiveStrength", 1.0f));
+    to->emission_nits = hdrp_v3_scale(to->emission_nits, number_f(e, "emissiveStrength", 1.0f));
 }
 
 void read_ior(material_importer&, const Value& e, rd_material* to)

@@ -5,8 +5,10 @@
 #include <cstdio>
 #include <cstring>
 
-namespace rd {
-namespace {
+namespace rd
+{
+namespace
+{
 
 using tinygltf::Accessor;
 using tinygltf::Model;
@@ -105,7 +107,8 @@ bool apply_sparse(const job& j, const Accessor& a, float* out)
     const size_t components = component_count(a.type);
     const size_t size = component_size(a.componentType) * components;
     const auto& s = a.sparse;
-    const unsigned char* index = view_data(model, s.indices.bufferView, size_t(s.indices.byteOffset));
+    const unsigned char* index =
+        view_data(model, s.indices.bufferView, size_t(s.indices.byteOffset));
     const unsigned char* value = view_data(model, s.values.bufferView, size_t(s.values.byteOffset));
     const size_t index_size = component_size(s.indices.componentType);
     for (int i = 0; i < s.count; ++i, index += index_size, value += size) {
@@ -276,8 +279,9 @@ bool read_indices(const job& j, size_t vertex_count, std::vector<uint32_t>* out)
     }
     for (uint32_t index : *out) {
         if (index >= vertex_count) {
-            return fail(*j.in, j.where, "index " + std::to_string(index) + " is beyond its " +
-                                            std::to_string(vertex_count) + " vertices");
+            return fail(*j.in, j.where,
+                        "index " + std::to_string(index) + " is beyond its " +
+                            std::to_string(vertex_count) + " vertices");
         }
     }
     return true;
@@ -422,8 +426,8 @@ bool import_mesh(const importer& in, int index, rd_affine world_from_node)
         j.where = "meshes[" + std::to_string(index) + "].primitives[" + std::to_string(i) + "]";
         std::memset(&j.mesh, 0, sizeof j.mesh);
         std::snprintf(j.mesh.name, RD_NAME_MAX, "%s", mesh.name.c_str());
-        j.mesh.material = j.primitive->material >= 0 ? j.primitive->material
-                                                     : in.scene->material_count - 1;
+        j.mesh.material =
+            j.primitive->material >= 0 ? j.primitive->material : in.scene->material_count - 1;
         if (!import_primitive(j, world_from_node)) {
             return false;
         }

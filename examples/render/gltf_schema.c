@@ -17,10 +17,10 @@ enum { OPTIONAL = 0, REQUIRED = 1, LIST = 2, MAP = 4 };
 typedef struct field {
     const char* name;
     kind type;
-    int flags;              /* LIST: an array of the type; MAP: an object of values of the type */
-    double low, high;       /* of numbers */
-    uint32_t fewest, most;  /* of list elements */
-    const void* detail;     /* K_OBJECT: its fields; K_INDEX: root array; K_ENUM: "a|b" */
+    int flags;             /* LIST: an array of the type; MAP: an object of values of the type */
+    double low, high;      /* of numbers */
+    uint32_t fewest, most; /* of list elements */
+    const void* detail;    /* K_OBJECT: its fields; K_INDEX: root array; K_ENUM: "a|b" */
 } field;
 
 #define ANY_COUNT 0, UINT32_MAX
@@ -29,15 +29,39 @@ typedef struct field {
     {                                                                                              \
         NULL, K_ANY, 0, 0, 0, 0, 0, NULL                                                           \
     }
-#define BOOL(n)                {n, K_BOOL, OPTIONAL, 0, 0, ANY_COUNT, NULL}
-#define INT(n, fl, lo, hi)     {n, K_INT, fl, lo, hi, ANY_COUNT, NULL}
-#define NUM(n, fl, lo, hi)     {n, K_NUMBER, fl, lo, hi, ANY_COUNT, NULL}
-#define NUMS(n, size, lo, hi)  {n, K_NUMBER, LIST, lo, hi, size, NULL}
-#define STR(n, fl)             {n, K_STRING, fl, 0, 0, ANY_COUNT, NULL}
-#define OBJ(n, fl, fields)     {n, K_OBJECT, fl, 0, 0, ANY_COUNT, fields}
-#define INDEX(n, fl, array)    {n, K_INDEX, fl, 0, 0, ANY_COUNT, array}
-#define ENUM(n, fl, words)     {n, K_ENUM, fl, 0, 0, ANY_COUNT, words}
-#define NAME                   STR("name", OPTIONAL)
+#define BOOL(n)                                                                                    \
+    {                                                                                              \
+        n, K_BOOL, OPTIONAL, 0, 0, ANY_COUNT, NULL                                                 \
+    }
+#define INT(n, fl, lo, hi)                                                                         \
+    {                                                                                              \
+        n, K_INT, fl, lo, hi, ANY_COUNT, NULL                                                      \
+    }
+#define NUM(n, fl, lo, hi)                                                                         \
+    {                                                                                              \
+        n, K_NUMBER, fl, lo, hi, ANY_COUNT, NULL                                                   \
+    }
+#define NUMS(n, size, lo, hi)                                                                      \
+    {                                                                                              \
+        n, K_NUMBER, LIST, lo, hi, size, NULL                                                      \
+    }
+#define STR(n, fl)                                                                                 \
+    {                                                                                              \
+        n, K_STRING, fl, 0, 0, ANY_COUNT, NULL                                                     \
+    }
+#define OBJ(n, fl, fields)                                                                         \
+    {                                                                                              \
+        n, K_OBJECT, fl, 0, 0, ANY_COUNT, fields                                                   \
+    }
+#define INDEX(n, fl, array)                                                                        \
+    {                                                                                              \
+        n, K_INDEX, fl, 0, 0, ANY_COUNT, array                                                     \
+    }
+#define ENUM(n, fl, words)                                                                         \
+    {                                                                                              \
+        n, K_ENUM, fl, 0, 0, ANY_COUNT, words                                                      \
+    }
+#define NAME STR("name", OPTIONAL)
 
 /* The largest integer that a double and every loader hold exactly. */
 #define INT_HIGH 9007199254740991.0
@@ -46,23 +70,22 @@ typedef struct field {
 
 static const field no_fields[] = {END};
 
-static const field transform_fields[] = {NUMS("offset", COUNT(2), -1e6, 1e6),
-                                         NUM("rotation", 0, -1e6, 1e6),
-                                         NUMS("scale", COUNT(2), -1e6, 1e6),
-                                         INT("texCoord", 0, 0, 255), END};
+static const field transform_fields[] = {
+    NUMS("offset", COUNT(2), -1e6, 1e6), NUM("rotation", 0, -1e6, 1e6),
+    NUMS("scale", COUNT(2), -1e6, 1e6), INT("texCoord", 0, 0, 255), END};
 static const field texture_info_extensions[] = {OBJ("KHR_texture_transform", 0, transform_fields),
                                                 END};
-static const field texture_info[] = {INDEX("index", REQUIRED, "textures"),
-                                     INT("texCoord", 0, 0, 255),
-                                     NUM("scale", 0, -FACTOR_HIGH, FACTOR_HIGH),
-                                     NUM("strength", 0, 0, 1),
-                                     OBJ("extensions", 0, texture_info_extensions), END};
+static const field texture_info[] = {
+    INDEX("index", REQUIRED, "textures"),          INT("texCoord", 0, 0, 255),
+    NUM("scale", 0, -FACTOR_HIGH, FACTOR_HIGH),    NUM("strength", 0, 0, 1),
+    OBJ("extensions", 0, texture_info_extensions), END};
 
 static const field clearcoat_fields[] = {NUM("clearcoatFactor", 0, 0, 1),
                                          OBJ("clearcoatTexture", 0, texture_info),
                                          NUM("clearcoatRoughnessFactor", 0, 0, 1),
                                          OBJ("clearcoatRoughnessTexture", 0, texture_info),
-                                         OBJ("clearcoatNormalTexture", 0, texture_info), END};
+                                         OBJ("clearcoatNormalTexture", 0, texture_info),
+                                         END};
 static const field anisotropy_fields[] = {NUM("anisotropyStrength", 0, 0, 1),
                                           NUM("anisotropyRotation", 0, -1e6, 1e6),
                                           OBJ("anisotropyTexture", 0, texture_info), END};
@@ -82,14 +105,12 @@ static const field ior_fields[] = {NUM("ior", 0, 0, FACTOR_HIGH), END};
 static const field emissive_strength_fields[] = {NUM("emissiveStrength", 0, 0, FACTOR_HIGH), END};
 static const field transmission_fields[] = {NUM("transmissionFactor", 0, 0, 1),
                                             OBJ("transmissionTexture", 0, texture_info), END};
-static const field volume_fields[] = {NUM("thicknessFactor", 0, 0, FACTOR_HIGH),
-                                      OBJ("thicknessTexture", 0, texture_info),
-                                      NUM("attenuationDistance", 0, DBL_MIN, DBL_MAX),
-                                      NUMS("attenuationColor", COUNT(3), 0, 1), END};
-static const field sheen_fields[] = {NUMS("sheenColorFactor", COUNT(3), 0, 1),
-                                     OBJ("sheenColorTexture", 0, texture_info),
-                                     NUM("sheenRoughnessFactor", 0, 0, 1),
-                                     OBJ("sheenRoughnessTexture", 0, texture_info), END};
+static const field volume_fields[] = {
+    NUM("thicknessFactor", 0, 0, FACTOR_HIGH), OBJ("thicknessTexture", 0, texture_info),
+    NUM("attenuationDistance", 0, DBL_MIN, DBL_MAX), NUMS("attenuationColor", COUNT(3), 0, 1), END};
+static const field sheen_fields[] = {
+    NUMS("sheenColorFactor", COUNT(3), 0, 1), OBJ("sheenColorTexture", 0, texture_info),
+    NUM("sheenRoughnessFactor", 0, 0, 1), OBJ("sheenRoughnessTexture", 0, texture_info), END};
 static const field material_extensions[] = {
     OBJ("KHR_materials_clearcoat", 0, clearcoat_fields),
     OBJ("KHR_materials_anisotropy", 0, anisotropy_fields),
@@ -106,7 +127,8 @@ static const field pbr_fields[] = {NUMS("baseColorFactor", COUNT(4), 0, 1),
                                    OBJ("baseColorTexture", 0, texture_info),
                                    NUM("metallicFactor", 0, 0, 1),
                                    NUM("roughnessFactor", 0, 0, 1),
-                                   OBJ("metallicRoughnessTexture", 0, texture_info), END};
+                                   OBJ("metallicRoughnessTexture", 0, texture_info),
+                                   END};
 static const field material_fields[] = {NAME,
                                         OBJ("pbrMetallicRoughness", 0, pbr_fields),
                                         OBJ("normalTexture", 0, texture_info),
@@ -178,27 +200,31 @@ static const field node_fields[] = {NAME,
                                     END};
 static const field scene_fields[] = {NAME, INDEX("nodes", LIST, "nodes"), END};
 static const field skin_fields[] = {
-    NAME, INDEX("inverseBindMatrices", 0, "accessors"), INDEX("skeleton", 0, "nodes"),
-    {"joints", K_INDEX, REQUIRED | LIST, 0, 0, 1, UINT32_MAX, "nodes"}, END};
+    NAME,
+    INDEX("inverseBindMatrices", 0, "accessors"),
+    INDEX("skeleton", 0, "nodes"),
+    {"joints", K_INDEX, REQUIRED | LIST, 0, 0, 1, UINT32_MAX, "nodes"},
+    END};
 
-static const field perspective_fields[] = {NUM("aspectRatio", 0, DBL_MIN, DBL_MAX),
-                                           NUM("yfov", REQUIRED, 1e-6, PI - 1e-6),
-                                           NUM("zfar", 0, DBL_MIN, DBL_MAX),
-                                           NUM("znear", REQUIRED, DBL_MIN, DBL_MAX), END};
-static const field orthographic_fields[] = {NUM("xmag", REQUIRED, 1e-12, FACTOR_HIGH),
-                                            NUM("ymag", REQUIRED, 1e-12, FACTOR_HIGH),
-                                            NUM("zfar", REQUIRED, DBL_MIN, DBL_MAX),
-                                            NUM("znear", REQUIRED, 0, DBL_MAX), END};
+static const field perspective_fields[] = {
+    NUM("aspectRatio", 0, DBL_MIN, DBL_MAX), NUM("yfov", REQUIRED, 1e-6, PI - 1e-6),
+    NUM("zfar", 0, DBL_MIN, DBL_MAX), NUM("znear", REQUIRED, DBL_MIN, DBL_MAX), END};
+static const field orthographic_fields[] = {
+    NUM("xmag", REQUIRED, 1e-12, FACTOR_HIGH), NUM("ymag", REQUIRED, 1e-12, FACTOR_HIGH),
+    NUM("zfar", REQUIRED, DBL_MIN, DBL_MAX), NUM("znear", REQUIRED, 0, DBL_MAX), END};
 static const field camera_fields[] = {NAME, ENUM("type", REQUIRED, "perspective|orthographic"),
                                       OBJ("perspective", 0, perspective_fields),
                                       OBJ("orthographic", 0, orthographic_fields), END};
 
-static const field image_fields[] = {NAME, STR("uri", 0), ENUM("mimeType", 0, "image/png|image/jpeg"),
+static const field image_fields[] = {NAME, STR("uri", 0),
+                                     ENUM("mimeType", 0, "image/png|image/jpeg"),
                                      INDEX("bufferView", 0, "bufferViews"), END};
-static const field sampler_fields[] = {NAME, ENUM("magFilter", 0, "9728|9729"),
+static const field sampler_fields[] = {NAME,
+                                       ENUM("magFilter", 0, "9728|9729"),
                                        ENUM("minFilter", 0, "9728|9729|9984|9985|9986|9987"),
                                        ENUM("wrapS", 0, "33071|33648|10497"),
-                                       ENUM("wrapT", 0, "33071|33648|10497"), END};
+                                       ENUM("wrapT", 0, "33071|33648|10497"),
+                                       END};
 static const field texture_fields[] = {NAME, INDEX("sampler", 0, "samplers"),
                                        INDEX("source", 0, "images"), END};
 

@@ -14,12 +14,21 @@
 #define BUFFER_TYPES       "application/octet-stream|application/gltf-buffer"
 #define IMAGE_TYPES        "image/png|image/jpeg"
 
-static const char* const known_extensions[] = {
-    "KHR_lights_punctual",      "KHR_materials_anisotropy",        "KHR_materials_clearcoat",
-    "KHR_materials_dispersion", "KHR_materials_emissive_strength", "KHR_materials_ior",
-    "KHR_materials_iridescence", "KHR_materials_sheen",            "KHR_materials_specular",
-    "KHR_materials_transmission", "KHR_materials_unlit",           "KHR_materials_variants",
-    "KHR_materials_volume",     "KHR_mesh_quantization",           "KHR_texture_transform"};
+static const char* const known_extensions[] = {"KHR_lights_punctual",
+                                               "KHR_materials_anisotropy",
+                                               "KHR_materials_clearcoat",
+                                               "KHR_materials_dispersion",
+                                               "KHR_materials_emissive_strength",
+                                               "KHR_materials_ior",
+                                               "KHR_materials_iridescence",
+                                               "KHR_materials_sheen",
+                                               "KHR_materials_specular",
+                                               "KHR_materials_transmission",
+                                               "KHR_materials_unlit",
+                                               "KHR_materials_variants",
+                                               "KHR_materials_volume",
+                                               "KHR_mesh_quantization",
+                                               "KHR_texture_transform"};
 
 typedef struct checker {
     const rd_gltf_file* file;
@@ -403,7 +412,8 @@ static bool check_cameras(const checker* c)
         if (!lens) {
             return refuse(c, "cameras", i, "has no \"%s\" member", type);
         }
-        if (has(lens, "zfar") && rd_json_number(lens, "zfar", 0) <= rd_json_number(lens, "znear", 0)) {
+        if (has(lens, "zfar") &&
+            rd_json_number(lens, "zfar", 0) <= rd_json_number(lens, "znear", 0)) {
             return refuse(c, "cameras", i, "has a zfar that is not beyond znear");
         }
     }
@@ -412,8 +422,7 @@ static bool check_cameras(const checker* c)
 
 static bool check_lights(const checker* c)
 {
-    const rd_json* owner =
-        rd_json_get(rd_json_get(c->root, "extensions"), "KHR_lights_punctual");
+    const rd_json* owner = rd_json_get(rd_json_get(c->root, "extensions"), "KHR_lights_punctual");
     const rd_json* lights = rd_json_get(owner, "lights");
     uint32_t i = 0;
     for (const rd_json* l = lights ? lights->first : NULL; l; l = l->next, ++i) {

@@ -258,7 +258,8 @@ static bool read_word(reader* r, rd_json* n)
         const char* word;
         rd_json_type type;
         double number;
-    } words[] = {{"true", RD_JSON_BOOL, 1.0}, {"false", RD_JSON_BOOL, 0.0}, {"null", RD_JSON_NULL, 0.0}};
+    } words[] = {
+        {"true", RD_JSON_BOOL, 1.0}, {"false", RD_JSON_BOOL, 0.0}, {"null", RD_JSON_NULL, 0.0}};
     for (size_t i = 0; i < 3; ++i) {
         size_t length = strlen(words[i].word);
         if ((size_t)(r->end - r->at) >= length && !memcmp(r->at, words[i].word, length)) {

@@ -22,11 +22,11 @@ typedef enum rd_json_type {
 
 typedef struct rd_json {
     rd_json_type type;
-    bool is_integer;     /* a number written without fraction and exponent */
-    uint32_t count;      /* of members or elements */
-    const char* key;     /* of a member, else NULL */
-    const char* string;  /* of a string, else NULL */
-    double number;       /* of a number; 0 or 1 of a bool */
+    bool is_integer;    /* a number written without fraction and exponent */
+    uint32_t count;     /* of members or elements */
+    const char* key;    /* of a member, else NULL */
+    const char* string; /* of a string, else NULL */
+    double number;      /* of a number; 0 or 1 of a bool */
     struct rd_json* first;
     struct rd_json* next;
 } rd_json;

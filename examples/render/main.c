@@ -107,9 +107,9 @@ static bool choose_camera(app* a, rd_camera* out)
                        a->scene.camera_count);
     }
     if (o->has_eye || o->has_target) {
-        *out = rd_camera_look_at(o->has_eye ? o->eye : framed.eye,
-                                 o->has_target ? o->target : framed.target, fov, o->width,
-                                 o->height);
+        *out =
+            rd_camera_look_at(o->has_eye ? o->eye : framed.eye,
+                              o->has_target ? o->target : framed.target, fov, o->width, o->height);
     } else if (a->scene.camera_count > 0 && !o->has_fov) {
         *out = rd_camera_from_scene(&a->scene, o->camera, o->width, o->height);
     }

@@ -28,11 +28,11 @@ static inline float rd_unit_from_hash(uint32_t h)
 static inline float rd_noise_corner(int32_t x, int32_t y, int32_t z, hdrp_v3 d, uint32_t period,
                                     uint32_t seed)
 {
-    uint32_t h = rd_hash3((uint32_t)x % period, (uint32_t)y % period,
-                          (uint32_t)z % period + (seed << 16));
-    hdrp_v3 g = hdrp_v3_make((float)(h & 1023u) / 511.5f - 1.0f,
-                             (float)(h >> 10 & 1023u) / 511.5f - 1.0f,
-                             (float)(h >> 20 & 1023u) / 511.5f - 1.0f);
+    uint32_t h =
+        rd_hash3((uint32_t)x % period, (uint32_t)y % period, (uint32_t)z % period + (seed << 16));
+    hdrp_v3 g =
+        hdrp_v3_make((float)(h & 1023u) / 511.5f - 1.0f, (float)(h >> 10 & 1023u) / 511.5f - 1.0f,
+                     (float)(h >> 20 & 1023u) / 511.5f - 1.0f);
     return hdrp_v3_dot(g, d);
 }
 

@@ -17,12 +17,18 @@ static const struct {
     const char* name;
     uint32_t bits;
 } features[] = {
-    {"clear_coat", RD_FEATURE_CLEAR_COAT},   {"anisotropy", RD_FEATURE_ANISOTROPY},
-    {"iridescence", RD_FEATURE_IRIDESCENCE}, {"refraction", RD_FEATURE_REFRACTION},
-    {"normal_maps", RD_FEATURE_NORMAL_MAPS}, {"occlusion", RD_FEATURE_OCCLUSION},
-    {"alpha_blend", RD_FEATURE_ALPHA_BLEND}, {"lights", RD_FEATURE_LIGHTS},
-    {"shadows", RD_FEATURE_SHADOWS},         {"environment", RD_FEATURE_ENVIRONMENT},
-    {"specular_aa", RD_FEATURE_SPECULAR_AA}, {"multiscatter", RD_FEATURE_MULTISCATTER},
+    {"clear_coat", RD_FEATURE_CLEAR_COAT},
+    {"anisotropy", RD_FEATURE_ANISOTROPY},
+    {"iridescence", RD_FEATURE_IRIDESCENCE},
+    {"refraction", RD_FEATURE_REFRACTION},
+    {"normal_maps", RD_FEATURE_NORMAL_MAPS},
+    {"occlusion", RD_FEATURE_OCCLUSION},
+    {"alpha_blend", RD_FEATURE_ALPHA_BLEND},
+    {"lights", RD_FEATURE_LIGHTS},
+    {"shadows", RD_FEATURE_SHADOWS},
+    {"environment", RD_FEATURE_ENVIRONMENT},
+    {"specular_aa", RD_FEATURE_SPECULAR_AA},
+    {"multiscatter", RD_FEATURE_MULTISCATTER},
     {"all", RD_FEATURE_ALL},
 };
 

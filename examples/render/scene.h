@@ -73,7 +73,7 @@ typedef struct rd_material {
     float ior;
     float transmission;
     bool has_volume;
-    float thickness_m; /* of a slab; a closed mesh with thickness is a solid */
+    float thickness_m;            /* of a slab; a closed mesh with thickness is a solid */
     float attenuation_distance_m; /* may be infinite */
     hdrp_v3 attenuation_color;
     hdrp_u32 features; /* HDRP_BRDF_FEATURE_... */
@@ -105,21 +105,21 @@ typedef enum rd_light_type {
 typedef struct rd_light {
     rd_light_type type;
     hdrp_v3 position;
-    hdrp_v3 forward, right, up; /* unit; light travels along forward */
-    hdrp_v3 color;              /* linear */
-    float intensity;            /* lux for directional and box, else candela */
-    float range_m;              /* 0: unlimited */
+    hdrp_v3 forward, right, up;             /* unit; light travels along forward */
+    hdrp_v3 color;                          /* linear */
+    float intensity;                        /* lux for directional and box, else candela */
+    float range_m;                          /* 0: unlimited */
     float inner_angle_rad, outer_angle_rad; /* spot: half angles of the cone */
-    float half_width, half_height; /* pyramid: at distance 1; box: in metres */
-    float radius_m;                /* size of the source for soft shadows; 0: a point */
-    float angular_radius_rad;      /* the same of a directional light */
+    float half_width, half_height;          /* pyramid: at distance 1; box: in metres */
+    float radius_m;                         /* size of the source for soft shadows; 0: a point */
+    float angular_radius_rad;               /* the same of a directional light */
 } rd_light;
 
 typedef struct rd_scene_camera {
     char name[RD_NAME_MAX];
     rd_affine world_from_view; /* looks along -z, rigid */
     bool orthographic;
-    float fov_y_rad;          /* perspective */
+    float fov_y_rad;               /* perspective */
     float half_width, half_height; /* orthographic */
 } rd_scene_camera;
 

@@ -19,8 +19,8 @@ static const hdrp_v3 ozone = {0.650e-6f, 1.881e-6f, 0.085e-6f};
 static const hdrp_v3 sun_above_lux = {1.28e5f * 1.05f, 1.28e5f * 0.99f, 1.28e5f * 0.95f};
 #define SUN_RADIUS_RAD 0.004654f
 
-#define VIEW_STEPS 16
-#define SUN_STEPS  6
+#define VIEW_STEPS     16
+#define SUN_STEPS      6
 
 typedef struct densities {
     float rayleigh, mie, ozone;
@@ -53,10 +53,9 @@ static float exit_distance(hdrp_v3 p, hdrp_v3 d, float radius)
 static hdrp_v3 transmittance(const rd_sky* sky, densities depth)
 {
     float mie = MIE_EXTINCT * sky->haze * depth.mie;
-    return hdrp_v3_make(
-        expf(-rayleigh.x * depth.rayleigh - ozone.x * depth.ozone - mie),
-        expf(-rayleigh.y * depth.rayleigh - ozone.y * depth.ozone - mie),
-        expf(-rayleigh.z * depth.rayleigh - ozone.z * depth.ozone - mie));
+    return hdrp_v3_make(expf(-rayleigh.x * depth.rayleigh - ozone.x * depth.ozone - mie),
+                        expf(-rayleigh.y * depth.rayleigh - ozone.y * depth.ozone - mie),
+                        expf(-rayleigh.z * depth.rayleigh - ozone.z * depth.ozone - mie));
 }
 
 static densities add(densities a, densities b, float length)
@@ -100,8 +99,8 @@ static float mie_phase(float c)
 /* Light that the air around p sends towards the eye, per metre and before extinction. */
 static hdrp_v3 scattered(const rd_sky* sky, hdrp_v3 p, densities d, float phase_r, float phase_m)
 {
-    hdrp_v3 light = hdrp_v3_mul(sun_above_lux,
-                                transmittance(sky, depth_to_top(p, sky->sun_direction)));
+    hdrp_v3 light =
+        hdrp_v3_mul(sun_above_lux, transmittance(sky, depth_to_top(p, sky->sun_direction)));
     float mie = MIE_SCATTER * sky->haze * d.mie;
     float even = MULTIPLE_SCATTERING / (4.0f * HDRP_PI);
     return hdrp_v3_make(

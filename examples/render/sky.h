@@ -6,12 +6,12 @@
 #include "hdrp_math.h"
 
 typedef struct rd_sky {
-    hdrp_v3 sun_direction;   /* unit, towards the sun */
-    hdrp_v3 sun_lux;         /* on a plane that faces it, on the ground */
-    float sun_radius_rad;    /* of the disc */
-    float haze;              /* 1: clear continental air; scales the aerosol */
+    hdrp_v3 sun_direction; /* unit, towards the sun */
+    hdrp_v3 sun_lux;       /* on a plane that faces it, on the ground */
+    float sun_radius_rad;  /* of the disc */
+    float haze;            /* 1: clear continental air; scales the aerosol */
     hdrp_v3 ground_albedo;
-    hdrp_v3 ground_nits;     /* luminance of the lit ground */
+    hdrp_v3 ground_nits; /* luminance of the lit ground */
 } rd_sky;
 
 /* The sun at an elevation above the horizon, and an azimuth from +Z towards +X. */

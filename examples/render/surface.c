@@ -240,8 +240,8 @@ static void set_vertex_normal(const patch* p, rd_surface* out)
     float side = out->back_face ? -1.0f : 1.0f;
     out->vertex_normal = out->geometric_normal;
     if (p->mesh->normals) {
-        out->vertex_normal = hdrp_normalize_or(
-            hdrp_v3_scale(combine3(p, p->mesh->normals), side), out->geometric_normal);
+        out->vertex_normal = hdrp_normalize_or(hdrp_v3_scale(combine3(p, p->mesh->normals), side),
+                                               out->geometric_normal);
     }
     out->normal_dx = hdrp_v3_scale(normal_step(p, p->weight_dx), side);
     out->normal_dy = hdrp_v3_scale(normal_step(p, p->weight_dy), side);
@@ -268,8 +268,8 @@ static void set_specular(const patch* p, rd_surface* out)
 {
     const rd_material* m = p->material;
     float weight = m->specular * sample(p, RD_SLOT_SPECULAR, white()).w;
-    hdrp_v3 tint = hdrp_v3_mul(m->specular_color,
-                               hdrp_v3_from_v4(sample(p, RD_SLOT_SPECULAR_COLOR, white())));
+    hdrp_v3 tint =
+        hdrp_v3_mul(m->specular_color, hdrp_v3_from_v4(sample(p, RD_SLOT_SPECULAR_COLOR, white())));
     float r = (m->ior - 1.0f) / (m->ior + 1.0f);
     float f0 = m->ior > 0.0f ? r * r : 1.0f;
     out->brdf.dielectric_fresnel0 =
@@ -306,8 +306,8 @@ static void set_anisotropy(const patch* p, rd_surface* out)
         s = &m->slot[RD_SLOT_NORMAL];
     }
     f = tangent_frame(p, s, out->brdf.normal, out->back_face);
-    out->brdf.tangent = hdrp_v3_mad(hdrp_v3_scale(f.tangent, c * x - k * y), f.bitangent,
-                                    k * x + c * y);
+    out->brdf.tangent =
+        hdrp_v3_mad(hdrp_v3_scale(f.tangent, c * x - k * y), f.bitangent, k * x + c * y);
     out->brdf.anisotropy = m->anisotropy * texel.z;
 }
 
@@ -321,8 +321,7 @@ static void set_film(const patch* p, rd_surface* out)
     t = sample(p, RD_SLOT_FILM_THICKNESS, white()).y;
     out->brdf.film_mask = m->film * sample(p, RD_SLOT_FILM, white()).x;
     out->brdf.film_ior = m->film_ior;
-    out->brdf.film_thickness_nm =
-        hdrp_lerp(m->film_thickness_min_nm, m->film_thickness_max_nm, t);
+    out->brdf.film_thickness_nm = hdrp_lerp(m->film_thickness_min_nm, m->film_thickness_max_nm, t);
 }
 
 static void set_transmission(const patch* p, rd_surface* out)

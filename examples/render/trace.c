@@ -79,11 +79,10 @@ static hdrp_v4 color_at(const mesh_ref* r, uint32_t triangle, float u, float v)
         const uint32_t* i = r->mesh->indices + (size_t)triangle * 3;
         const hdrp_v4* q = r->mesh->colors;
         float w = 1.0f - u - v;
-        hdrp_v4 vertex =
-            hdrp_v4_make(q[i[0]].x * w + q[i[1]].x * u + q[i[2]].x * v,
-                         q[i[0]].y * w + q[i[1]].y * u + q[i[2]].y * v,
-                         q[i[0]].z * w + q[i[1]].z * u + q[i[2]].z * v,
-                         q[i[0]].w * w + q[i[1]].w * u + q[i[2]].w * v);
+        hdrp_v4 vertex = hdrp_v4_make(q[i[0]].x * w + q[i[1]].x * u + q[i[2]].x * v,
+                                      q[i[0]].y * w + q[i[1]].y * u + q[i[2]].y * v,
+                                      q[i[0]].z * w + q[i[1]].z * u + q[i[2]].z * v,
+                                      q[i[0]].w * w + q[i[1]].w * u + q[i[2]].w * v);
         c = hdrp_v4_mul(c, vertex);
     }
     return c;
@@ -99,9 +98,9 @@ static void mask_filter(const struct RTCFilterFunctionNArguments* a)
     const mesh_ref* r = (const mesh_ref*)a->geometryUserPtr;
     for (unsigned i = 0; i < a->N; ++i) {
         if (a->valid[i] == -1) {
-            hdrp_v4 c = color_at(r, packet_u32(a->hit, a->N, i, HIT_TRIANGLE),
-                                 packet_f32(a->hit, a->N, i, HIT_U),
-                                 packet_f32(a->hit, a->N, i, HIT_V));
+            hdrp_v4 c =
+                color_at(r, packet_u32(a->hit, a->N, i, HIT_TRIANGLE),
+                         packet_f32(a->hit, a->N, i, HIT_U), packet_f32(a->hit, a->N, i, HIT_V));
             a->valid[i] = is_cut_out(r, c.w) ? 0 : -1;
         }
     }
@@ -111,10 +110,9 @@ static void gather(rd_layers* layers, const rd_hit* hit)
 {
     if (layers->count == layers->capacity) {
         uint32_t capacity = layers->capacity ? layers->capacity * 2 : 64;
-        rd_hit* grown =
-            capacity <= RD_LAYERS_MAX
-                ? (rd_hit*)realloc(layers->hits, (size_t)capacity * sizeof *grown)
-                : NULL;
+        rd_hit* grown = capacity <= RD_LAYERS_MAX
+                            ? (rd_hit*)realloc(layers->hits, (size_t)capacity * sizeof *grown)
+                            : NULL;
         if (!grown) {
             ++layers->dropped;
             return;

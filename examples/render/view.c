@@ -108,8 +108,7 @@ hdrp_v3 rd_view_value(rd_view view, const rd_camera* camera, const rd_surface* s
     case RD_VIEW_F0:
         return hdrp_brdf_fresnel0(b->base_color, b->metallic, b->dielectric_fresnel0);
     case RD_VIEW_DEPTH:
-        return hdrp_v3_splat(
-            hdrp_v3_dot(hdrp_v3_sub(s->position, camera->eye), camera->forward));
+        return hdrp_v3_splat(hdrp_v3_dot(hdrp_v3_sub(s->position, camera->eye), camera->forward));
     case RD_VIEW_FEATURES:
         return feature_color(b->features);
     case RD_VIEW_MATERIAL: {
