@@ -133,9 +133,9 @@ static float hammered_height(float u, float v)
     for (int32_t j = -1; j <= 1; ++j) {
         for (int32_t i = -1; i <= 1; ++i) {
             uint32_t x = (uint32_t)(cx + i + 16) % 16u, y = (uint32_t)(cy + j + 16) % 16u;
-            uint32_t h = rd_hash3(x, y, 81u);
-            float dx = u * n - ((float)(cx + i) + rd_unit_from_hash(h));
-            float dy = v * n - ((float)(cy + j) + rd_unit_from_hash(rd_hash(h)));
+            uint32_t h = hdrp_hash3(x, y, 81u);
+            float dx = u * n - ((float)(cx + i) + hdrp_unit_from_u32(h));
+            float dy = v * n - ((float)(cy + j) + hdrp_unit_from_u32(hdrp_hash1(h)));
             nearest = hdrp_min(nearest, dx * dx + dy * dy);
         }
     }
@@ -192,9 +192,9 @@ static hdrp_v4 normal_texel(hdrp_v3 n)
 /* Each flake is a flat cell with a tilt of its own. */
 static hdrp_v4 flakes(float u, float v)
 {
-    uint32_t h = rd_hash3((uint32_t)(u * 256.0f), (uint32_t)(v * 256.0f), 101u);
-    float a = rd_unit_from_hash(h) * HDRP_TWO_PI;
-    float tilt = 0.16f * sqrtf(rd_unit_from_hash(rd_hash(h)));
+    uint32_t h = hdrp_hash3((uint32_t)(u * 256.0f), (uint32_t)(v * 256.0f), 101u);
+    float a = hdrp_unit_from_u32(h) * HDRP_TWO_PI;
+    float tilt = 0.16f * sqrtf(hdrp_unit_from_u32(hdrp_hash1(h)));
     return normal_texel(hdrp_v3_make(tilt * cosf(a), tilt * sinf(a), 1.0f));
 }
 

@@ -165,10 +165,6 @@ rd_ray_spread rd_camera_spread(const rd_camera* c, float x, float y)
 
 hdrp_v2 rd_camera_jitter(uint32_t i, uint32_t seed)
 {
-    /* Roberts 2018, "The Unreasonable Effectiveness of Quasirandom Sequences": steps of 1/p and
-     * 1/p^2, p = 1.3247... the plastic number, as 32-bit fractions. */
-    uint32_t n = i + seed * 0x9e3779b9u;
-    uint32_t x = 0x80000000u + n * 0xc13fa9a9u;
-    uint32_t y = 0x80000000u + n * 0x91e10da5u;
-    return hdrp_v2_make((float)(x >> 8) * 0x1p-24f, (float)(y >> 8) * 0x1p-24f);
+    /* A seed starts the sequence somewhere else; 0 starts it at the centre of the pixel. */
+    return hdrp_r2(i + seed * 0x9e3779b9u);
 }

@@ -11,8 +11,7 @@
 
 static double encode(float x, float scale)
 {
-    float v = hdrp_saturate(x * scale);
-    return v <= 0.0031308f ? 12.92 * (double)v : 1.055 * pow((double)v, 1.0 / 2.4) - 0.055;
+    return (double)hdrp_srgb_from_linear(hdrp_saturate(x * scale));
 }
 
 static double luminance(const float* p)

@@ -4,32 +4,12 @@
 
 #include "hdrp_math.h"
 
-/* An integer hash with full avalanche: the finaliser of MurmurHash3, Appleby 2011. */
-static inline uint32_t rd_hash(uint32_t x)
-{
-    x ^= x >> 16;
-    x *= 0x85ebca6bu;
-    x ^= x >> 13;
-    x *= 0xc2b2ae35u;
-    return x ^ x >> 16;
-}
-
-static inline uint32_t rd_hash3(uint32_t x, uint32_t y, uint32_t z)
-{
-    return rd_hash(x + rd_hash(y + rd_hash(z + 0x9e3779b9u)));
-}
-
-static inline float rd_unit_from_hash(uint32_t h)
-{
-    return (float)(h >> 8) * 0x1p-24f;
-}
-
 /* The lattice gradient at a corner, dotted with the offset from it. */
 static inline float rd_noise_corner(int32_t x, int32_t y, int32_t z, hdrp_v3 d, uint32_t period,
                                     uint32_t seed)
 {
     uint32_t h =
-        rd_hash3((uint32_t)x % period, (uint32_t)y % period, (uint32_t)z % period + (seed << 16));
+        hdrp_hash3((uint32_t)x % period, (uint32_t)y % period, (uint32_t)z % period + (seed << 16));
     hdrp_v3 g =
         hdrp_v3_make((float)(h & 1023u) / 511.5f - 1.0f, (float)(h >> 10 & 1023u) / 511.5f - 1.0f,
                      (float)(h >> 20 & 1023u) / 511.5f - 1.0f);

@@ -3,13 +3,11 @@
 #include "file.h"
 #include "image.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 static float srgb(float x)
 {
-    x = hdrp_saturate(x);
-    return x <= 0.0031308f ? x * 12.92f : 1.055f * powf(x, 1.0f / 2.4f) - 0.055f;
+    return hdrp_srgb_from_linear(hdrp_saturate(x));
 }
 
 /* The nearest covered distance, for RD_ENCODE_DISTANCE. */

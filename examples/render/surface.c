@@ -1,5 +1,7 @@
 #include "surface.h"
 
+#include "noise.h"
+
 #include <math.h>
 #include <stddef.h>
 
@@ -100,21 +102,19 @@ static hdrp_v3 normal_step(const patch* p, hdrp_v2 weight)
 
 /* >>textures */
 
-static uv_point uv_of_set(const patch* p, int set)
+/* How the coordinates change from corner 0 to another. */
+static hdrp_v2 uv_along(const patch* p, int set, int corner)
 {
     const hdrp_v2* uv = p->mesh->uv[set];
+    return uv ? hdrp_v2_sub(uv[p->corner[corner]], uv[p->corner[0]]) : hdrp_v2_make(0.0f, 0.0f);
+}
+
+static uv_point uv_of_set(const patch* p, int set)
+{
+    hdrp_v2 along1 = uv_along(p, set, 1), along2 = uv_along(p, set, 2);
+    hdrp_v2 first = p->mesh->uv[set] ? p->mesh->uv[set][p->corner[0]] : hdrp_v2_make(0.0f, 0.0f);
     uv_point r;
-    hdrp_v2 a, b, c, along1, along2;
-    if (!uv) {
-        r.uv = r.dx = r.dy = hdrp_v2_make(0.0f, 0.0f);
-        return r;
-    }
-    a = uv[p->corner[0]];
-    b = uv[p->corner[1]];
-    c = uv[p->corner[2]];
-    along1 = hdrp_v2_sub(b, a);
-    along2 = hdrp_v2_sub(c, a);
-    r.uv = hdrp_v2_add(a, uv_step(along1, along2, hdrp_v2_make(p->weight[1], p->weight[2])));
+    r.uv = hdrp_v2_add(first, uv_step(along1, along2, hdrp_v2_make(p->weight[1], p->weight[2])));
     r.dx = uv_step(along1, along2, p->weight_dx);
     r.dy = uv_step(along1, along2, p->weight_dy);
     return r;
@@ -143,75 +143,122 @@ static hdrp_v4 white(void)
     return hdrp_v4_make(1.0f, 1.0f, 1.0f, 1.0f);
 }
 
-/* >>frames */
+/* >>frames and normals, by surface gradients */
 
-/* The directions in which u and -v of a slot's texture grow: the frame of a glTF normal map. */
-static hdrp_basis frame_from_uv(const patch* p, const rd_texture_slot* s, hdrp_v3 n)
+/* Where the texture of a slot gets its tangents from: the mesh where it has some and they belong to
+ * the uv set, else the uv themselves. The derivatives along two edges serve as well as those along
+ * two screen axes, and do not vanish where a ray has no footprint. */
+static hdrp_basis tangent_frame(const patch* p, const rd_texture_slot* s, const rd_surface* at)
 {
-    const hdrp_v2* uv = p->mesh->uv[s->uv_set];
-    hdrp_basis f = hdrp_basis_from_normal(n);
+    float side = at->back_face ? -1.0f : 1.0f;
     hdrp_v2 d1, d2;
-    hdrp_v3 t, b;
-    float det;
-    if (!uv) {
-        return f;
+    if (p->mesh->tangents && s->uv_set == 0) {
+        hdrp_v4 t = combine4(p, p->mesh->tangents);
+        if (hdrp_v3_dot(hdrp_v3_from_v4(t), hdrp_v3_from_v4(t)) > 0.01f) {
+            hdrp_v3 n = hdrp_v3_scale(combine3(p, p->mesh->normals), side);
+            hdrp_surface_frame f =
+                hdrp_surface_frame_from_vertex(n, hdrp_v3_from_v4(t), t.w * side);
+            hdrp_basis b;
+            b.tangent = f.tangent;
+            b.bitangent = f.bitangent;
+            return b;
+        }
     }
-    d1 = map_uv(s, hdrp_v2_sub(uv[p->corner[1]], uv[p->corner[0]]), 0.0f);
-    d2 = map_uv(s, hdrp_v2_sub(uv[p->corner[2]], uv[p->corner[0]]), 0.0f);
-    det = hdrp_sign_not_zero(d1.x * d2.y - d1.y * d2.x);
-    t = hdrp_v3_scale(hdrp_v3_mad(hdrp_v3_scale(p->edge1, d2.y), p->edge2, -d1.y), det);
-    b = hdrp_v3_scale(hdrp_v3_mad(hdrp_v3_scale(p->edge1, d2.x), p->edge2, -d1.x), det);
-    t = hdrp_v3_mad(t, n, -hdrp_v3_dot(t, n));
-    b = hdrp_v3_mad(b, n, -hdrp_v3_dot(b, n));
-    f.tangent = hdrp_normalize_or(t, f.tangent);
-    f.bitangent = hdrp_normalize_or(b, hdrp_v3_cross(n, f.tangent));
-    return f;
+    d1 = map_uv(s, uv_along(p, s->uv_set, 1), 0.0f);
+    d2 = map_uv(s, uv_along(p, s->uv_set, 2), 0.0f);
+    /* Green grows upwards in the picture, against v. */
+    return hdrp_basis_from_uv(
+        hdrp_surface_footprint_from_position(at->vertex_normal, p->edge1, p->edge2),
+        hdrp_v2_make(d1.x, -d1.y), hdrp_v2_make(d2.x, -d2.y));
 }
 
-/* The mesh's own tangents where it has them and they belong to the uv set, as MikkTSpace means
- * them: the bitangent from the interpolated vectors. */
-static hdrp_basis tangent_frame(const patch* p, const rd_texture_slot* s, hdrp_v3 n, bool flipped)
-{
-    hdrp_basis f;
-    hdrp_v4 t;
-    float sign;
-    if (!p->mesh->tangents || s->uv_set != 0) {
-        return frame_from_uv(p, s, n);
-    }
-    t = combine4(p, p->mesh->tangents);
-    f.tangent = hdrp_normalize_or(hdrp_v3_from_v4(t), hdrp_v3_splat(0.0f));
-    if (hdrp_v3_dot(f.tangent, f.tangent) < 0.5f) {
-        return frame_from_uv(p, s, n);
-    }
-    sign = flipped ? -t.w : t.w;
-    f.bitangent = hdrp_v3_scale(hdrp_v3_cross(n, f.tangent), hdrp_sign_not_zero(sign));
-    return f;
-}
-
-/* A stand-in for the surface-gradient functions of hdrp_math.h. */
-static hdrp_v3 perturb(hdrp_v3 n, hdrp_basis f, hdrp_v3 ts)
-{
-    hdrp_v3 r = hdrp_v3_scale(n, hdrp_max(ts.z, 1e-3f));
-    r = hdrp_v3_mad(hdrp_v3_mad(r, f.tangent, ts.x), f.bitangent, ts.y);
-    return hdrp_normalize_or(r, n);
-}
-
-static hdrp_v3 normal_map(const patch* p, rd_slot slot, float scale, hdrp_v3 n, bool flipped,
-                          float* length)
+/* The gradient of a normal map, and how long its filtered vector was. */
+static hdrp_v3 map_gradient(const patch* p, rd_slot slot, float scale, const rd_surface* at,
+                            float* length)
 {
     const rd_texture_slot* s = &p->material->slot[slot];
-    /* Seen from behind, a bump is a dent. */
-    float slope = flipped ? -scale : scale;
-    hdrp_v4 texel;
-    hdrp_v3 ts;
+    hdrp_v3 normal;
+    hdrp_basis f;
     if (s->texture < 0) {
-        return n;
+        return hdrp_v3_splat(0.0f);
     }
-    texel = sample(p, slot, white());
-    ts = hdrp_v3_make(texel.x * 2.0f - 1.0f, texel.y * 2.0f - 1.0f, texel.z * 2.0f - 1.0f);
-    *length = hdrp_v3_length(ts);
-    ts = hdrp_v3_make(ts.x * slope, ts.y * slope, ts.z);
-    return perturb(n, tangent_frame(p, s, n, flipped), ts);
+    normal = hdrp_normal_from_rgb(hdrp_v3_from_v4(sample(p, slot, white())));
+    *length = hdrp_v3_length(normal);
+    f = tangent_frame(p, s, at);
+    /* Materials are sheets: a bump seen from behind is a dent. */
+    return hdrp_surface_gradient_from_derivative(
+        hdrp_derivative_from_normal(normal, at->back_face ? -scale : scale), f.tangent,
+        f.bitangent);
+}
+
+/* >>detail by position: triplanar layers */
+
+static hdrp_v4 sample_plane(const patch* p, int texture, float scale, hdrp_v2 at, hdrp_v2 dx,
+                            hdrp_v2 dy)
+{
+    return rd_texture_sample(&p->scene->textures.items[texture], hdrp_v2_scale(at, scale),
+                             hdrp_v2_scale(dx, scale), hdrp_v2_scale(dy, scale));
+}
+
+/* The three planes in the order and with the axes of hdrp_surface_gradient_from_triplanar. */
+static hdrp_v2 plane_coordinates(hdrp_v3 p, int plane)
+{
+    return plane == 0   ? hdrp_v2_make(p.z, p.y)
+           : plane == 1 ? hdrp_v2_make(p.x, p.z)
+                        : hdrp_v2_make(p.x, p.y);
+}
+
+static hdrp_v4 sample_triplane(const patch* p, int texture, float scale, const rd_surface* at,
+                               int plane)
+{
+    return sample_plane(p, texture, scale, plane_coordinates(at->position, plane),
+                        plane_coordinates(at->position_dx, plane),
+                        plane_coordinates(at->position_dy, plane));
+}
+
+static hdrp_v3 layer_gradient(const patch* p, int layer, hdrp_v3 weights, const rd_surface* at)
+{
+    const rd_detail* d = &p->material->detail;
+    hdrp_v2 derivative[3];
+    for (int i = 0; i < 3; ++i) {
+        hdrp_v4 texel = sample_triplane(p, d->texture[layer], d->scale[layer], at, i);
+        hdrp_v3 normal = hdrp_normal_from_rgb(hdrp_v3_from_v4(texel));
+        derivative[i] = hdrp_derivative_from_normal(normal, d->strength[layer]);
+        derivative[i].y = -derivative[i].y; /* green grows against v */
+    }
+    return hdrp_surface_gradient_from_triplanar(at->vertex_normal, weights, derivative[0],
+                                                derivative[1], derivative[2]);
+}
+
+/* The first layer everywhere, the others in patches. */
+static hdrp_v3 detail_gradient(const patch* p, const rd_surface* at)
+{
+    const rd_detail* d = &p->material->detail;
+    hdrp_v3 weights = hdrp_triplanar_weights(at->vertex_normal, 6.0f);
+    hdrp_v3 sum = hdrp_v3_splat(0.0f);
+    for (int i = 0; i < d->layer_count; ++i) {
+        hdrp_v3 where = hdrp_v3_mad(hdrp_v3_splat(64.0f), at->position, 5.0f);
+        float mask = i == 0 ? 1.0f : hdrp_saturate(0.6f + 1.5f * rd_noise(where, 1u << 20, 3u));
+        sum = hdrp_v3_mad(sum, layer_gradient(p, i, weights, at), mask);
+    }
+    return sum;
+}
+
+static hdrp_v4 base_texel(const patch* p, const rd_surface* at)
+{
+    const rd_detail* d = &p->material->detail;
+    int texture = p->material->slot[RD_SLOT_BASE_COLOR].texture;
+    hdrp_v3 w;
+    hdrp_v4 x, y, z;
+    if (d->layer_count == 0 || texture < 0) {
+        return sample(p, RD_SLOT_BASE_COLOR, white());
+    }
+    w = hdrp_triplanar_weights(at->vertex_normal, 6.0f);
+    x = sample_triplane(p, texture, d->scale[0], at, 0);
+    y = sample_triplane(p, texture, d->scale[0], at, 1);
+    z = sample_triplane(p, texture, d->scale[0], at, 2);
+    return hdrp_v4_make(x.x * w.x + y.x * w.y + z.x * w.z, x.y * w.x + y.y * w.y + z.y * w.z,
+                        x.z * w.x + y.z * w.y + z.z * w.z, x.w * w.x + y.w * w.y + z.w * w.z);
 }
 
 /* >>the material at the point */
@@ -247,11 +294,21 @@ static void set_vertex_normal(const patch* p, rd_surface* out)
     out->normal_dy = hdrp_v3_scale(normal_step(p, p->weight_dy), side);
 }
 
+static void set_normal(const patch* p, rd_surface* out)
+{
+    hdrp_v3 sum =
+        map_gradient(p, RD_SLOT_NORMAL, p->material->normal_scale, out, &out->normal_map_length);
+    if (p->material->detail.layer_count > 0) {
+        sum = hdrp_v3_add(sum, detail_gradient(p, out));
+    }
+    out->brdf.normal = hdrp_normal_from_surface_gradient(out->vertex_normal, sum);
+}
+
 static void set_base(const patch* p, rd_surface* out)
 {
     const rd_material* m = p->material;
     hdrp_v4 vertex = p->mesh->colors ? combine4(p, p->mesh->colors) : white();
-    hdrp_v4 base = hdrp_v4_mul(sample(p, RD_SLOT_BASE_COLOR, white()), vertex);
+    hdrp_v4 base = hdrp_v4_mul(base_texel(p, out), vertex);
     hdrp_v4 mr = sample(p, RD_SLOT_METALLIC_ROUGHNESS, white());
     hdrp_v4 emission = sample(p, RD_SLOT_EMISSIVE, white());
     float occlusion = sample(p, RD_SLOT_OCCLUSION, white()).x;
@@ -288,8 +345,9 @@ static void set_coat(const patch* p, rd_surface* out)
     out->brdf.coat_mask = m->coat * sample(p, RD_SLOT_COAT, white()).x;
     out->brdf.coat_perceptual_roughness =
         m->coat_perceptual_roughness * sample(p, RD_SLOT_COAT_ROUGHNESS, white()).y;
-    out->brdf.coat_normal = normal_map(p, RD_SLOT_COAT_NORMAL, m->coat_normal_scale,
-                                       out->vertex_normal, out->back_face, &unused);
+    out->brdf.coat_normal = hdrp_normal_from_surface_gradient(
+        out->vertex_normal,
+        map_gradient(p, RD_SLOT_COAT_NORMAL, m->coat_normal_scale, out, &unused));
 }
 
 /* KHR_materials_anisotropy: the texture's direction, turned counter-clockwise by the rotation, in
@@ -305,7 +363,7 @@ static void set_anisotropy(const patch* p, rd_surface* out)
     if (s->texture < 0) {
         s = &m->slot[RD_SLOT_NORMAL];
     }
-    f = tangent_frame(p, s, out->brdf.normal, out->back_face);
+    f = tangent_frame(p, s, out);
     out->brdf.tangent =
         hdrp_v3_mad(hdrp_v3_scale(f.tangent, c * x - k * y), f.bitangent, k * x + c * y);
     out->brdf.anisotropy = m->anisotropy * texel.z;
@@ -346,8 +404,7 @@ void rd_surface_evaluate(const rd_scene* scene, const rd_ray* ray, const rd_ray_
     set_geometry(&p, ray, spread, hit, out);
     set_vertex_normal(&p, out);
     out->uv = uv_of_set(&p, 0).uv;
-    out->brdf.normal = normal_map(&p, RD_SLOT_NORMAL, p.material->normal_scale, out->vertex_normal,
-                                  out->back_face, &out->normal_map_length);
+    set_normal(&p, out);
     set_base(&p, out);
     set_specular(&p, out);
     set_coat(&p, out);

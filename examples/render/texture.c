@@ -14,25 +14,15 @@ static float linear_from_code[256];
 static float unorm_from_code[256];
 static unsigned char code_from_root[ENCODE_STEPS + 1];
 
-static float linear_from_srgb(float s)
-{
-    return s <= 0.04045f ? s / 12.92f : powf((s + 0.055f) / 1.055f, 2.4f);
-}
-
-static float srgb_from_linear(float x)
-{
-    return x <= 0.0031308f ? x * 12.92f : 1.055f * powf(x, 1.0f / 2.4f) - 0.055f;
-}
-
 static void fill_tables(void)
 {
     for (int i = 0; i < 256; ++i) {
-        linear_from_code[i] = linear_from_srgb((float)i / 255.0f);
+        linear_from_code[i] = hdrp_linear_from_srgb((float)i / 255.0f);
         unorm_from_code[i] = (float)i / 255.0f;
     }
     for (int i = 0; i <= ENCODE_STEPS; ++i) {
         float root = (float)i / ENCODE_STEPS;
-        code_from_root[i] = (unsigned char)(srgb_from_linear(root * root) * 255.0f + 0.5f);
+        code_from_root[i] = (unsigned char)(hdrp_srgb_from_linear(root * root) * 255.0f + 0.5f);
     }
 }
 

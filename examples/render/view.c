@@ -49,10 +49,10 @@ rd_view rd_view_from_name(const char* name)
     return (rd_view)i;
 }
 
-/* Colours that differ from their neighbours: the golden ratio walks around the hues. */
+/* A hue for each index. */
 static hdrp_v3 index_color(uint32_t i)
 {
-    float h = (float)(i * 0x9e3779b9u >> 8) * 0x1p-24f * 6.0f;
+    float h = hdrp_unit_from_u32(hdrp_hash1(i)) * 6.0f;
     return hdrp_v3_saturate(hdrp_v3_make(hdrp_abs(h - 3.0f) - 1.0f, 2.0f - hdrp_abs(h - 2.0f),
                                          2.0f - hdrp_abs(h - 4.0f)));
 }
