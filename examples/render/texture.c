@@ -297,18 +297,14 @@ hdrp_v4 rd_texture_sample(const rd_texture* t, hdrp_v2 uv, hdrp_v2 d_dx, hdrp_v2
     float shorter = lx > ly ? ly : lx;
     hdrp_v4 sum = hdrp_v4_make(0.0f, 0.0f, 0.0f, 0.0f);
     float lod;
-    int probes = 1;
+    int probes;
     if (!(longer > 1.0f)) {
         return sample_level(t, 0, uv);
     }
     if (!(longer < 1e9f)) {
         return sample_level(t, t->level_count - 1, uv);
     }
-    if (shorter * MAX_PROBES < longer) {
-        probes = MAX_PROBES;
-    } else {
-        probes = (int)ceilf(longer / shorter);
-    }
+    probes = shorter * MAX_PROBES >= longer ? (int)ceilf(longer / shorter) : MAX_PROBES;
     lod = log2f(longer / (float)probes);
     for (int i = 0; i < probes; ++i) {
         float s = ((float)i + 0.5f) / (float)probes - 0.5f;

@@ -28,7 +28,9 @@ struct rd_trace {
 typedef struct query {
     struct RTCIntersectContext base; /* first: filters see a pointer to it */
     rd_layers* gather;
-    hdrp_v3* transmittance; /* by ray.id */
+    hdrp_v3* transmittance;     /* by ray.id */
+    uint32_t last_mesh[PACKET]; /* of the hit that was multiplied last */
+    float last_t[PACKET];
 } query;
 
 hdrp_v3 rd_trace_offset(hdrp_v3 p, hdrp_v3 n)
@@ -132,7 +134,23 @@ static hdrp_v3 pass_through(const rd_material* m, hdrp_v4 c)
     return hdrp_v3_add(hdrp_v3_splat(1.0f - alpha), tint);
 }
 
-static bool accept_layer(const mesh_ref* r, const query* q, const rd_hit* hit, unsigned ray_id)
+/* A ray along an edge meets both triangles there: one surface, not two. */
+static bool is_same_surface(uint32_t mesh, float t, const rd_hit* hit)
+{
+    return mesh == hit->mesh && hdrp_abs(t - hit->t) <= 2e-6f * hit->t;
+}
+
+static void multiply(query* q, const mesh_ref* r, const rd_hit* hit, hdrp_v4 c, unsigned ray_id)
+{
+    hdrp_v3* t = &q->transmittance[ray_id];
+    if (!is_same_surface(q->last_mesh[ray_id], q->last_t[ray_id], hit)) {
+        *t = hdrp_v3_mul(*t, pass_through(r->material, c));
+    }
+    q->last_mesh[ray_id] = hit->mesh;
+    q->last_t[ray_id] = hit->t;
+}
+
+static bool accept_layer(const mesh_ref* r, query* q, const rd_hit* hit, unsigned ray_id)
 {
     hdrp_v4 c;
     if (r->material->alpha_mode != RD_ALPHA_MASK && !q->transmittance) {
@@ -148,8 +166,7 @@ static bool accept_layer(const mesh_ref* r, const query* q, const rd_hit* hit, u
         return false;
     }
     if (q->transmittance) {
-        hdrp_v3* t = &q->transmittance[ray_id];
-        *t = hdrp_v3_mul(*t, pass_through(r->material, c));
+        multiply(q, r, hit, c, ray_id);
         return false;
     }
     return true;
@@ -158,7 +175,7 @@ static bool accept_layer(const mesh_ref* r, const query* q, const rd_hit* hit, u
 static void layer_filter(const struct RTCFilterFunctionNArguments* a)
 {
     const mesh_ref* r = (const mesh_ref*)a->geometryUserPtr;
-    const query* q = (const query*)a->context;
+    query* q = (query*)a->context;
     for (unsigned i = 0; i < a->N; ++i) {
         rd_hit hit;
         if (a->valid[i] != -1) {
@@ -221,6 +238,9 @@ static bool build(rd_trace* t, rd_report* report)
     }
     t->opaque = rtcNewScene(t->device);
     t->layers = rtcNewScene(t->device);
+    /* Without this, single rays slip through between neighbouring triangles. */
+    rtcSetSceneFlags(t->opaque, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneFlags(t->layers, RTC_SCENE_FLAG_ROBUST);
     t->refs = (mesh_ref*)calloc((size_t)t->scene->mesh_count + 1, sizeof *t->refs);
     if (!t->refs) {
         return rd_fail(report, "Embree", "out of memory");
@@ -274,6 +294,7 @@ static query make_query(bool coherent)
 {
     query q;
     memset(&q, 0, sizeof q);
+    memset(q.last_mesh, 0xff, sizeof q.last_mesh); /* RD_NO_HIT */
     rtcInitIntersectContext(&q.base);
     q.base.flags =
         coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
@@ -424,6 +445,18 @@ static int compare_hits(const void* a, const void* b)
     return x->triangle < y->triangle ? -1 : x->triangle > y->triangle;
 }
 
+static void remove_doubles(rd_layers* layers)
+{
+    uint32_t kept = 1;
+    for (uint32_t i = 1; i < layers->count; ++i) {
+        const rd_hit* last = &layers->hits[kept - 1];
+        if (!is_same_surface(last->mesh, last->t, &layers->hits[i])) {
+            layers->hits[kept++] = layers->hits[i];
+        }
+    }
+    layers->count = kept;
+}
+
 void rd_trace_layers(const rd_trace* t, const rd_ray* ray, rd_layers* layers)
 {
     query q = make_query(false);
@@ -447,5 +480,6 @@ void rd_trace_layers(const rd_trace* t, const rd_ray* ray, rd_layers* layers)
     rtcIntersect1(t->layers, &q.base, &p);
     if (layers->count > 1) {
         qsort(layers->hits, layers->count, sizeof *layers->hits, compare_hits);
+        remove_doubles(layers);
     }
 }
