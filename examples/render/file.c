@@ -27,24 +27,26 @@ static bool read_all(FILE* f, unsigned char* bytes, size_t size)
 bool rd_file_read(const char* path, unsigned char** bytes, size_t* size, rd_report* report)
 {
     uint64_t length;
-    FILE* f = fopen(path, "rb");
+    FILE* f;
     bool ok;
-    if (!f) {
+    /* Before opening: a pipe would block, a device never end. */
+    if (access(path, R_OK) != 0) {
         return rd_fail(report, path, "cannot open: %s", strerror(errno));
     }
     if (!rd_file_size(path, &length) || length > RD_FILE_MAX) {
-        fclose(f);
         return rd_fail(report, path, "not a regular file of at most 2 GiB");
     }
+    f = fopen(path, "rb");
     *size = (size_t)length;
     *bytes = (unsigned char*)malloc(*size + 1);
-    ok = *bytes && read_all(f, *bytes, *size);
-    fclose(f);
+    ok = f && *bytes && read_all(f, *bytes, *size);
+    if (f) {
+        fclose(f);
+    }
     if (!ok) {
-        bool no_memory = *bytes == NULL;
         free(*bytes);
         *bytes = NULL;
-        return rd_fail(report, path, no_memory ? "out of memory" : "cannot read");
+        return rd_fail(report, path, "cannot read");
     }
     return true;
 }

@@ -102,7 +102,7 @@ bool parse(const rd_gltf_file* file, Model* model, std::string* error)
                                        const_cast<rd_gltf_file*>(file)};
     loader.SetFsCallbacks(callbacks);
     loader.SetImageLoader(keep_image, nullptr);
-    const std::string directory = file->directory[0] ? file->directory : ".";
+    const std::string directory = file->directory;
     if (!file->is_binary) {
         return loader.LoadASCIIFromString(model, error, &warning, file->json,
                                           unsigned(file->json_size), directory);

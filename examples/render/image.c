@@ -1,26 +1,40 @@
 #include "image.h"
 
+#include "file.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* The first bytes of a regular file; zeros where it has none. */
+static void read_magic(const char* path, unsigned char magic[4])
+{
+    uint64_t size;
+    FILE* f = rd_file_size(path, &size) ? fopen(path, "rb") : NULL;
+    memset(magic, 0, 4);
+    if (f && fread(magic, 1, 4, f) != 4) {
+        memset(magic, 0, 4);
+    }
+    if (f) {
+        fclose(f);
+    }
+}
+
 bool rd_image_read_f32(rd_image_f32* image, const char* path, rd_report* report)
 {
-    unsigned char magic[4] = {0, 0, 0, 0};
-    FILE* f = fopen(path, "rb");
-    size_t n = f ? fread(magic, 1, 4, f) : 0;
+    unsigned char magic[4];
+    uint64_t size;
+    read_magic(path, magic);
     memset(image, 0, sizeof *image);
-    if (!f) {
-        return rd_fail(report, path, "cannot open");
-    }
-    fclose(f);
-    if (n == 4 && !memcmp(magic, "\x76\x2f\x31\x01", 4)) {
+    if (!memcmp(magic, "\x76\x2f\x31\x01", 4)) {
         return rd_image_read_exr(image, path, report);
     }
-    if (n == 4 && !memcmp(magic, "#?", 2)) {
+    if (!memcmp(magic, "#?", 2)) {
         return rd_image_read_hdr(image, path, report);
     }
-    return rd_fail(report, path, "neither an OpenEXR nor a Radiance image");
+    return rd_fail(report, path,
+                   rd_file_size(path, &size) ? "neither an OpenEXR nor a Radiance image"
+                                             : "no such file");
 }
 
 void rd_image_free_f32(rd_image_f32* image)

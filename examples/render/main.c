@@ -138,11 +138,21 @@ static bool write_picture(app* a, const char* path)
     return ok;
 }
 
+/* Around a thing in full circles; inside a room, to and fro by a small angle. */
+static float frame_angle(const app* a, const rd_camera* camera, int frame)
+{
+    const rd_bounds* b = &a->scene.bounds;
+    hdrp_v3 e = camera->eye;
+    float turn = HDRP_TWO_PI * (float)frame / (float)a->options.frames;
+    bool inside = e.x > b->low.x && e.x < b->high.x && e.y > b->low.y && e.y < b->high.y &&
+                  e.z > b->low.z && e.z < b->high.z;
+    return inside ? 0.3f * sinf(turn) : turn;
+}
+
 static bool render_frames(app* a, const rd_camera* camera)
 {
     for (int i = 0; i < a->options.frames; ++i) {
-        float angle = HDRP_TWO_PI * (float)i / (float)a->options.frames;
-        rd_camera c = rd_camera_orbit(*camera, angle);
+        rd_camera c = rd_camera_orbit(*camera, frame_angle(a, camera, i));
         char* path;
         bool ok;
         rd_render(&a->renderer, &c);

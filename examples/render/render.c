@@ -4,8 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <omp.h>
-
 #define ROWS_PER_JOB 8
 #define MAX_RUN      64 /* pixels whose rays are traced in one call */
 

@@ -4,14 +4,19 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Names in a hostile file may hold line breaks or terminal escapes: keep one printable line. */
+/* Libraries speak in several lines, and names in a hostile file may hold terminal escapes: keeps
+ * one printable line. */
 static void make_printable(char* s)
 {
-    for (; *s; ++s) {
-        unsigned char c = (unsigned char)*s;
+    size_t length = strlen(s);
+    for (size_t i = 0; i < length; ++i) {
+        unsigned char c = (unsigned char)s[i];
         if (c < 0x20 || c == 0x7f) {
-            *s = '?';
+            s[i] = c == '\n' ? ' ' : '?';
         }
+    }
+    while (length > 0 && s[length - 1] == ' ') {
+        s[--length] = '\0';
     }
 }
 

@@ -141,46 +141,49 @@ static size_t build_levels(rd_texture* t)
 }
 
 /* One job: its errors go to a report of its own, so that the first texture with an error wins
- * whatever the order of the jobs. */
-static size_t prepare(rd_texture* t, rd_report* report)
+ * whatever the order of the jobs. `memory` is shared by all jobs. */
+static bool prepare(rd_texture* t, size_t* memory, rd_report* report)
 {
-    size_t bytes;
+    const char* name = t->name ? t->name : "texture";
+    size_t bytes, total;
     if (t->level[0]) {
-        return 0;
+        return true;
     }
     if (t->encoded) {
-        bool ok = rd_image_decode_u8(&t->image, t->encoded, t->encoded_size, t->name, report);
+        bool ok = rd_image_decode_u8(&t->image, t->encoded, t->encoded_size, name, report);
         free(t->encoded);
         t->encoded = NULL;
         if (!ok) {
-            return 0;
+            return false;
         }
     }
     bytes = build_levels(t);
-    if (!bytes) {
-        rd_fail(report, t->name ? t->name : "texture", "out of memory");
+#pragma omp atomic capture
+    total = *memory += bytes;
+    if (total > RD_TEXTURES_MAX_BYTES) {
+        return rd_fail(report, name, "the textures of the scene need more than 4 GiB");
     }
-    return bytes;
+    return bytes > 0 ? true : rd_fail(report, name, "out of memory");
 }
 
 bool rd_textures_prepare(rd_texture_set* set, rd_report* report)
 {
-    size_t memory = 0;
     int worst = set->count;
     char first_error[RD_TEXT_MAX] = "";
     fill_tables();
-#pragma omp parallel for schedule(dynamic, 1) reduction(+ : memory)
+#pragma omp parallel for schedule(dynamic, 1)
     for (int i = 0; i < set->count; ++i) {
         rd_report r;
         r.failed = false;
-        memory += prepare(&set->items[i], &r);
+        if (prepare(&set->items[i], &set->memory, &r)) {
+            continue;
+        }
 #pragma omp critical(rd_texture_error)
-        if (r.failed && i < worst) {
+        if (i < worst) {
             worst = i;
             memcpy(first_error, r.error, sizeof first_error);
         }
     }
-    set->memory += memory;
     if (worst < set->count && !report->failed) {
         report->failed = true;
         memcpy(report->error, first_error, sizeof first_error);

@@ -11,6 +11,7 @@ extern "C" {
 #endif
 
 #define RD_TEXTURE_MAX_LEVELS 16
+#define RD_TEXTURES_MAX_BYTES ((size_t)4 << 30)
 
 typedef enum rd_wrap { RD_WRAP_REPEAT, RD_WRAP_CLAMP, RD_WRAP_MIRROR } rd_wrap;
 

@@ -251,6 +251,28 @@ static void texture_transforms_scale_then_rotate_then_shift(void** state)
     rd_scene_free(&s);
 }
 
+static void a_buffer_may_be_the_beginning_of_a_longer_file(void** state)
+{
+    static const float data[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 7, 7, 7};
+    rd_scene s;
+    FILE* bin = fopen("test gltf import.bin", "wb");
+    FILE* f = fopen(FILE_NAME, "w");
+    (void)state;
+    assert_true(bin && f && fwrite(data, sizeof data, 1, bin) == 1);
+    fprintf(f,
+            "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":36,\"uri\":"
+            "\"test%%20gltf%%20import.bin\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],"
+            "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"type\":\"VEC3\","
+            "\"count\":3}]" ONE_NODE
+            ",\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]}");
+    fclose(bin);
+    fclose(f);
+    s = load();
+    assert_int_equal(s.triangle_count, 1);
+    rd_scene_free(&s);
+    remove("test gltf import.bin");
+}
+
 /* >>refusals that no file in the shared assets covers */
 
 static void names_a_missing_texture(void** state)
@@ -337,6 +359,7 @@ int main(void)
         cmocka_unit_test(sparse_values_replace_single_elements),
         cmocka_unit_test(normalized_integers_cover_zero_to_one),
         cmocka_unit_test(texture_transforms_scale_then_rotate_then_shift),
+        cmocka_unit_test(a_buffer_may_be_the_beginning_of_a_longer_file),
         cmocka_unit_test(names_a_missing_texture),
         cmocka_unit_test(refuses_required_extensions_it_does_not_know),
         cmocka_unit_test(refuses_accessors_that_cost_the_file_nothing),
