@@ -4,12 +4,16 @@
  * See hdrp_math.h for the languages, the conventions and the override macros.
  *
  * >>index of the functions, without hdrp_brdf_ (written by tools/api_check.py --write)
- *   material: surface_default diffuse_color fresnel0 data_from_surface
+ *   material: surface_default diffuse_color fresnel0 data_from_surface metallic_from_colors
+ *       data_from_diffuse_specular dielectric_fresnel0
+ *   lit: lit_view_make lit_eval dominant_direction lit_env_make
+ *   sampling lit: lit_pdf lit_sample
+ *   fgd table, C and C++ only: fgd_integrate fgd_bake_rows fgd_lookup
  * >>end */
 #ifndef HDRP_BRDF_H
 #define HDRP_BRDF_H
 
-#include "hdrp_math.h"
+#include "hdrp_brdf_lobes.h"
 
 #if HDRP_VERSION != 100
 #error "hdrp_brdf.h 0.1.0 needs the hdrp_math.h of the same version"
@@ -28,13 +32,6 @@
 #define HDRP_BRDF_FEATURE_REFRACTION   32u /* specular light crosses the surface; forward only */
 #define HDRP_BRDF_FEATURE_ALL          63u
 
-/* Narrowest GGX lobe. Every function of alpha treats a smaller one as this. */
-#define HDRP_ALPHA_MIN 1e-4f
-/* Smallest perceptual roughness whose alpha is HDRP_ALPHA_MIN. */
-#define HDRP_PERCEPTUAL_ROUGHNESS_MIN 0.01f
-/* The coat is a polyurethane or glass layer. */
-#define HDRP_BRDF_COAT_IOR      1.5f
-#define HDRP_BRDF_COAT_FRESNEL0 0.04f
 /* The coat's width where a layout has no room for one. Lagarde and Golubev 2018, "The Road toward
  * Unified Rendering with Unity's High Definition Render Pipeline", slides on clear coat. */
 #define HDRP_BRDF_COAT_PERCEPTUAL_ROUGHNESS 0.03f
@@ -62,6 +59,7 @@ struct hdrp_brdf_surface {
     hdrp_v3 transmittance;           /* [0,1] of the slab, from profile and thickness */
     float transmission;              /* [0,1] share of light that refracts instead of diffusing */
     float ior;                       /* [1,3] of the volume below the surface */
+    float volume_thickness_m;        /* [0,1e6] below the surface; 0 is a thin wall */
     hdrp_u32 features;               /* HDRP_BRDF_FEATURE_... */
 };
 HDRP_TYPEDEF(hdrp_brdf_surface)
@@ -92,6 +90,7 @@ struct hdrp_brdf_data {
     hdrp_v3 transmittance;           /* [0,1] */
     float transmission;              /* [0,1] */
     float ior;                       /* [1,3] */
+    float volume_thickness_m;        /* [0,1e6] */
     hdrp_u32 features;               /* HDRP_BRDF_FEATURE_... */
 };
 HDRP_TYPEDEF(hdrp_brdf_data)
@@ -125,6 +124,7 @@ HDRP_FN hdrp_brdf_surface hdrp_brdf_surface_default(void)
     s.transmittance = hdrp_v3_splat(0.0f);
     s.transmission = 0.0f;
     s.ior = 1.5f;
+    s.volume_thickness_m = 0.0f;
     s.features = 0u;
     return s;
 }
@@ -154,51 +154,834 @@ HDRP_FN hdrp_v3 hdrp_brdf_fresnel0(hdrp_v3 base_color, float metallic, hdrp_v3 d
     return hdrp_v3_lerp(dielectric_fresnel0, base_color, metallic);
 }
 
+/** d with an orthonormal frame from a normal and a tangent of any length. */
+HDRP_FN hdrp_brdf_data hdrp_i_brdf_data_set_frame(hdrp_brdf_data d, hdrp_v3 normal, hdrp_v3 tangent)
+{
+    hdrp_v3 n = hdrp_normalize_or(normal, hdrp_v3_make(0.0f, 0.0f, 1.0f));
+    hdrp_v3 t = hdrp_normalize_or(tangent, hdrp_basis_from_normal(n).tangent);
+    hdrp_v3 in_plane = hdrp_v3_mad(t, n, -hdrp_v3_dot(t, n));
+    /* Below 1e-3 the tangent is the normal up to rounding and in_plane is noise. */
+    if (hdrp_v3_dot(in_plane, in_plane) < 1e-6f) {
+        in_plane = hdrp_basis_from_normal(n).tangent;
+    }
+    d.normal = n;
+    d.tangent = hdrp_v3_normalize(in_plane);
+    d.bitangent = hdrp_v3_cross(n, d.tangent);
+    return d;
+}
+
+/** x where the features have the flag, else 0. */
+HDRP_FN float hdrp_i_brdf_feature(float x, hdrp_u32 features, hdrp_u32 flag)
+{
+    return (features & flag) != 0u ? x : 0.0f;
+}
+
+/** d with the values of all features; those that the material lacks become neutral. */
+HDRP_FN hdrp_brdf_data hdrp_i_brdf_data_set_features(hdrp_brdf_data d, hdrp_brdf_surface s)
+{
+    hdrp_u32 f = s.features & HDRP_BRDF_FEATURE_ALL;
+    hdrp_u32 crossing = HDRP_BRDF_FEATURE_TRANSMISSION | HDRP_BRDF_FEATURE_REFRACTION;
+    float anisotropy = hdrp_clamp(s.anisotropy, -1.0f, 1.0f);
+    d.features = f;
+    d.anisotropy = hdrp_i_brdf_feature(anisotropy, f, HDRP_BRDF_FEATURE_ANISOTROPY);
+    d.coat_mask = hdrp_i_brdf_feature(hdrp_saturate(s.coat_mask), f, HDRP_BRDF_FEATURE_CLEAR_COAT);
+    d.coat_perceptual_roughness = hdrp_saturate(s.coat_perceptual_roughness);
+    d.coat_normal = hdrp_normalize_or(s.coat_normal, d.normal);
+    d.film_mask = hdrp_i_brdf_feature(hdrp_saturate(s.film_mask), f, HDRP_BRDF_FEATURE_IRIDESCENCE);
+    d.film_ior = hdrp_clamp(s.film_ior, 1.0f, 3.0f);
+    d.film_thickness_nm = hdrp_clamp(s.film_thickness_nm, 0.0f, 3000.0f);
+    d.subsurface_mask =
+        hdrp_i_brdf_feature(hdrp_saturate(s.subsurface_mask), f, HDRP_BRDF_FEATURE_SUBSURFACE);
+    d.diffusion_profile = s.diffusion_profile & 15u;
+    d.thickness = hdrp_saturate(s.thickness);
+    d.transmittance =
+        hdrp_v3_scale(hdrp_v3_saturate(s.transmittance), hdrp_i_brdf_feature(1.0f, f, crossing));
+    d.transmission =
+        hdrp_i_brdf_feature(hdrp_saturate(s.transmission), f, HDRP_BRDF_FEATURE_REFRACTION);
+    d.ior = hdrp_clamp(s.ior, 1.0f, 3.0f);
+    d.volume_thickness_m = hdrp_clamp(s.volume_thickness_m, 0.0f, 1e6f);
+    return d;
+}
+
 /** Engine data of a surface in the base colour and metallic parametrisation.
  *  s        any  every field; NaN and out-of-range values are limited to the documented range
- *  returns  valid
- *  edges    a normal without direction becomes +Z, a tangent along the normal an arbitrary one;
- *           NaN becomes the lower bound of its field
+ *  returns  valid; what belongs to a feature that s.features lacks is neutral
+ *  edges    a normal without direction becomes +Z, a tangent along the normal an arbitrary one; NaN
+ *           becomes the lower bound of its field
  *  error    none: limits, and the two formulas above
  *  source   Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
  *           Definition Render Pipeline", slides on material architecture */
 HDRP_FN hdrp_brdf_data hdrp_brdf_data_from_surface(hdrp_brdf_surface s)
 {
     hdrp_brdf_data d;
-    float metallic = hdrp_saturate(s.metallic);
-    hdrp_v3 base_color = hdrp_v3_saturate(s.base_color);
-    hdrp_v3 n = hdrp_normalize_or(s.normal, hdrp_v3_make(0.0f, 0.0f, 1.0f));
-    hdrp_v3 t = hdrp_normalize_or(s.tangent, hdrp_basis_from_normal(n).tangent);
-    hdrp_v3 in_plane = hdrp_v3_mad(t, n, -hdrp_v3_dot(t, n));
-    d.base_color = base_color;
-    d.metallic = metallic;
-    d.diffuse_color = hdrp_brdf_diffuse_color(base_color, metallic);
-    d.fresnel0 = hdrp_brdf_fresnel0(base_color, metallic, hdrp_v3_saturate(s.dielectric_fresnel0));
+    hdrp_v3 dielectric = hdrp_v3_saturate(s.dielectric_fresnel0);
+    d.metallic = hdrp_saturate(s.metallic);
+    d.base_color = hdrp_v3_saturate(s.base_color);
+    d.diffuse_color = hdrp_brdf_diffuse_color(d.base_color, d.metallic);
+    d.fresnel0 = hdrp_brdf_fresnel0(d.base_color, d.metallic, dielectric);
     d.perceptual_roughness = hdrp_saturate(s.perceptual_roughness);
-    d.normal = n;
-    /* Below 1e-3 the tangent is the normal up to rounding and in_plane is noise. */
-    if (hdrp_v3_dot(in_plane, in_plane) < 1e-6f) {
-        in_plane = hdrp_basis_from_normal(n).tangent;
-    }
-    d.tangent = hdrp_v3_normalize(in_plane);
-    d.bitangent = hdrp_v3_cross(n, d.tangent);
     d.ambient_occlusion = hdrp_saturate(s.ambient_occlusion);
     d.specular_occlusion = hdrp_saturate(s.specular_occlusion);
-    d.anisotropy = hdrp_clamp(s.anisotropy, -1.0f, 1.0f);
-    d.coat_mask = hdrp_saturate(s.coat_mask);
-    d.coat_perceptual_roughness = hdrp_saturate(s.coat_perceptual_roughness);
-    d.coat_normal = hdrp_normalize_or(s.coat_normal, n);
-    d.film_mask = hdrp_saturate(s.film_mask);
-    d.film_ior = hdrp_clamp(s.film_ior, 1.0f, 3.0f);
-    d.film_thickness_nm = hdrp_clamp(s.film_thickness_nm, 0.0f, 3000.0f);
-    d.subsurface_mask = hdrp_saturate(s.subsurface_mask);
-    d.diffusion_profile = s.diffusion_profile & 15u;
-    d.thickness = hdrp_saturate(s.thickness);
-    d.transmittance = hdrp_v3_saturate(s.transmittance);
-    d.transmission = hdrp_saturate(s.transmission);
-    d.ior = hdrp_clamp(s.ior, 1.0f, 3.0f);
-    d.features = s.features & HDRP_BRDF_FEATURE_ALL;
+    d = hdrp_i_brdf_data_set_frame(d, s.normal, s.tangent);
+    return hdrp_i_brdf_data_set_features(d, s);
+}
+
+/** Metallic that a diffuse and a specular colour amount to, by their largest components.
+ *  diffuse   [0,1]
+ *  specular  [0,1]
+ *  returns   [0,1]  m with diffuse = base (1 - m), specular = 0.04 (1 - m) + base m for some base
+ *  edges     1 for a black diffuse colour, 0 for a specular colour of 0.04 and less
+ *  error     <= 6e-7 absolute, in the specular colour of the result where one exists
+ *            @accuracy brdf_metallic_from_colors
+ *  source    both equations of Burley 2012, "Physically-Based Shading at Disney", solved for m
+ *  note      the smaller root of 0.04 x^2 - (specular + diffuse) x + diffuse with x = 1 - m, in the
+ *            form that does not cancel */
+HDRP_FN float hdrp_brdf_metallic_from_colors(float diffuse, float specular)
+{
+    float s = hdrp_max(specular, HDRP_BRDF_COAT_FRESNEL0);
+    float sum = s + diffuse;
+    float root = hdrp_sqrt(hdrp_max(sum * sum - 4.0f * HDRP_BRDF_COAT_FRESNEL0 * diffuse, 0.0f));
+    return hdrp_saturate(1.0f - 2.0f * diffuse / (sum + root));
+}
+
+/** Engine data of a surface in the diffuse and specular colour parametrisation.
+ *  s               any  base_color, metallic and dielectric_fresnel0 are not read
+ *  diffuse_color   any  linear Rec.709, limited to [0,1]
+ *  specular_color  any  F0, limited to [0,1]
+ *  returns         valid; base_color and metallic are the nearest equivalent, which layouts that
+ *                  store those instead of the colours will use
+ *  edges           as hdrp_brdf_data_from_surface
+ *  error           none: limits, and the formula above
+ *  source          Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
+ *                  Definition Render Pipeline", slides on the Lit shader */
+HDRP_FN hdrp_brdf_data hdrp_brdf_data_from_diffuse_specular(hdrp_brdf_surface s,
+                                                            hdrp_v3 diffuse_color,
+                                                            hdrp_v3 specular_color)
+{
+    hdrp_brdf_data d = hdrp_brdf_data_from_surface(s);
+    d.diffuse_color = hdrp_v3_saturate(diffuse_color);
+    d.fresnel0 = hdrp_v3_saturate(specular_color);
+    d.metallic = hdrp_brdf_metallic_from_colors(hdrp_v3_max_component(d.diffuse_color),
+                                                hdrp_v3_max_component(d.fresnel0));
+    d.base_color = hdrp_v3_saturate(hdrp_v3_lerp(
+        hdrp_v3_scale(d.diffuse_color, 1.0f / hdrp_max(1.0f - d.metallic, HDRP_FLT_EPSILON)),
+        d.fresnel0, d.metallic * d.metallic));
     return d;
 }
 
+/** F0 of a dielectric from its IOR and an artist's weight and tint.
+ *  ior             [1,4]  against air
+ *  specular_color  [0,inf)  tint of F0, linear Rec.709
+ *  specular        [0,1]  weight: 0 is no specular reflection at any angle
+ *  returns         [0,1]  for hdrp_brdf_surface.dielectric_fresnel0
+ *  edges           0.04 for IOR 1.5, white and weight 1
+ *  error           <= 2.5e-7 absolute  @accuracy brdf_dielectric_fresnel0
+ *  source          glTF 2.0, KHR_materials_ior and KHR_materials_specular, "Implementation"
+ *  note            the extension also scales the reflectance at grazing by the weight; here that
+ *                  follows from F0, see hdrp_brdf_fresnel90 */
+HDRP_FN hdrp_v3 hdrp_brdf_dielectric_fresnel0(float ior, hdrp_v3 specular_color, float specular)
+{
+    float f0 = hdrp_brdf_fresnel0_from_ior(ior, 1.0f);
+    float w = hdrp_saturate(specular);
+    return hdrp_v3_make(hdrp_saturate(specular_color.x * f0) * w,
+                        hdrp_saturate(specular_color.y * f0) * w,
+                        hdrp_saturate(specular_color.z * f0) * w);
+}
+
+/* >>lit
+ * The whole material for one light direction, and what it asks of an environment. Make the view
+ * first, once per pixel; then evaluate each light. Each function takes a mask of features: pass a
+ * constant that covers what the materials have, and the code for all else folds away. A material
+ * that lacks a feature of the mask has neutral data for it and comes out the same.
+ *
+ * Layers, from the top: clear coat, thin film (part of the base's Fresnel term), specular base,
+ * diffuse or transmitted light. What a layer reflects, the layers below it do not receive. */
+
+/* May be or-ed to the features: references evaluate the thin film for each light, exactly. */
+#define HDRP_BRDF_LIT_EXACT 256u
+
+/* Smallest cosine of the view. What lies beyond is shaded as if it were just visible. */
+#define HDRP_BRDF_N_DOT_V_MIN 1e-4f
+
+/* What the lights of a pixel share. Made by hdrp_brdf_lit_view_make. */
+struct hdrp_brdf_lit_view {
+    hdrp_v3 v;                     /* unit */
+    float n_dot_v;                 /* [HDRP_BRDF_N_DOT_V_MIN,1] */
+    hdrp_brdf_alphas alphas;       /* of the base lobe */
+    hdrp_v3 fresnel0;              /* [0,1] of the base, under its film and coat */
+    float fresnel90;               /* [0,1] */
+    hdrp_v3 compensation;          /* [1,20] multiscattering factor of the base lobe */
+    hdrp_v3 specular_albedo;       /* [0,1] of the base lobe, all bounces */
+    hdrp_brdf_fgd_fit diffuse_fit; /* couples the diffuse lobe to the base lobe */
+    hdrp_v3 diffuse;               /* [0,7] 1/sr, what all lights share of the diffuse lobe */
+    hdrp_v3 diffuse_albedo;        /* [0,1] of the diffuse lobe */
+    hdrp_v3 transmitted;           /* [0,1] colour of refracted light, before the Fresnel term */
+    float coat_n_dot_v;            /* [HDRP_BRDF_N_DOT_V_MIN,1] */
+    float below_coat;              /* [0,1] share of light from v that the coat lets through */
+};
+HDRP_TYPEDEF(hdrp_brdf_lit_view)
+
+/* Light reflected per unit of illuminance on a surface that faces the light: BRDF times n_dot_l.
+ * In two parts, because subsurface scattering blurs only the first. */
+struct hdrp_brdf_lit {
+    hdrp_v3 diffuse;  /* [0,inf) 1/sr, with light that crosses a thin slab */
+    hdrp_v3 specular; /* [0,inf) 1/sr, with light that is refracted through a wall */
+};
+HDRP_TYPEDEF(hdrp_brdf_lit)
+
+/** Share of light from a direction that the coat lets through to the layers below. */
+HDRP_FN float hdrp_i_brdf_below_coat(float coat_mask, float n_dot_x)
+{
+    return 1.0f - coat_mask * hdrp_brdf_f_schlick(HDRP_BRDF_COAT_FRESNEL0, 1.0f, n_dot_x);
+}
+
+/** IOR of what lies above the base. */
+HDRP_FN float hdrp_i_brdf_outer_ior(hdrp_brdf_data d, hdrp_u32 features)
+{
+    return (features & HDRP_BRDF_FEATURE_CLEAR_COAT) != 0u
+               ? hdrp_lerp(1.0f, HDRP_BRDF_COAT_IOR, d.coat_mask)
+               : 1.0f;
+}
+
+/** Reflectance of film and base at an angle, given as its cosine in air. */
+HDRP_FN hdrp_v3 hdrp_i_brdf_lit_film(hdrp_brdf_data d, float u, hdrp_u32 features)
+{
+    float outer = hdrp_i_brdf_outer_ior(d, features);
+    float c = hdrp_brdf_refracted_cosine(u, outer);
+    if ((features & HDRP_BRDF_LIT_EXACT) != 0u) {
+        return hdrp_brdf_film_exact(c, outer, d.film_ior, d.film_thickness_nm, d.fresnel0);
+    }
+    return hdrp_brdf_film(c, outer, d.film_ior, d.film_thickness_nm, d.fresnel0);
+}
+
+/** F0 of the base without film, as light finds it under a coat. */
+HDRP_FN hdrp_v3 hdrp_i_brdf_lit_bare_fresnel0(hdrp_brdf_data d, hdrp_u32 features)
+{
+    if ((features & HDRP_BRDF_FEATURE_CLEAR_COAT) != 0u) {
+        return hdrp_v3_lerp(d.fresnel0, hdrp_brdf_fresnel0_under_coat(d.fresnel0), d.coat_mask);
+    }
+    return d.fresnel0;
+}
+
+/** F0 of the base under film and coat. A film has no F0: it gets that of the Schlick curve through
+ *  its reflectance at this view, so that lights from elsewhere follow a plausible curve. */
+HDRP_FN hdrp_v3 hdrp_i_brdf_lit_fresnel0(hdrp_brdf_data d, float n_dot_v, hdrp_u32 features)
+{
+    hdrp_v3 f0 = hdrp_i_brdf_lit_bare_fresnel0(d, features);
+    if ((features & HDRP_BRDF_FEATURE_IRIDESCENCE) != 0u) {
+        hdrp_v3 f = hdrp_i_brdf_lit_film(d, n_dot_v, features);
+        hdrp_v3 film = hdrp_v3_make(hdrp_brdf_fresnel0_from_schlick(f.x, n_dot_v),
+                                    hdrp_brdf_fresnel0_from_schlick(f.y, n_dot_v),
+                                    hdrp_brdf_fresnel0_from_schlick(f.z, n_dot_v));
+        f0 = hdrp_v3_lerp(f0, film, d.film_mask);
+    }
+    return f0;
+}
+
+/** The widths of the base lobe. */
+HDRP_FN hdrp_brdf_alphas hdrp_i_brdf_lit_alphas(hdrp_brdf_data d, hdrp_u32 features)
+{
+    hdrp_brdf_alphas a;
+    if ((features & HDRP_BRDF_FEATURE_ANISOTROPY) != 0u) {
+        return hdrp_brdf_alphas_kulla(d.perceptual_roughness, d.anisotropy);
+    }
+    a.t = hdrp_brdf_alpha_from_perceptual_roughness(d.perceptual_roughness);
+    a.b = a.t;
+    return a;
+}
+
+/** What the lights of a pixel share.
+ *  d         valid  material
+ *  v         unit   towards the viewer
+ *  fgd       valid  at the cosine of v and d.perceptual_roughness: from a table for a white furnace
+ *            that stays white, or by hdrp_brdf_fgd_fast
+ *  features  any    HDRP_BRDF_FEATURE_... that the material may have, HDRP_BRDF_LIT_EXACT
+ *  returns   valid
+ *  edges     a v below the surface is shaded as if it were just above
+ *  error     none: composed of the functions above
+ *  source    Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
+ *            Definition Render Pipeline", slides on the Lit shader
+ *  note      an anisotropic lobe uses the directional albedo of the isotropic one of its mean
+ *            width, as the source does; its furnace is off by up to 12 % at anisotropy +-1 */
+HDRP_FN hdrp_brdf_lit_view hdrp_brdf_lit_view_make(hdrp_brdf_data d, hdrp_v3 v, hdrp_brdf_fgd fgd,
+                                                   hdrp_u32 features)
+{
+    hdrp_brdf_lit_view w;
+    hdrp_v3 share;
+    hdrp_v3 mean;
+    w.v = v;
+    w.n_dot_v = hdrp_clamp(hdrp_v3_dot(d.normal, v), HDRP_BRDF_N_DOT_V_MIN, 1.0f);
+    w.alphas = hdrp_i_brdf_lit_alphas(d, features);
+    w.fresnel0 = hdrp_i_brdf_lit_fresnel0(d, w.n_dot_v, features);
+    w.fresnel90 = hdrp_brdf_fresnel90(w.fresnel0);
+    w.compensation = hdrp_brdf_energy_compensation(fgd, w.fresnel0);
+    w.specular_albedo = hdrp_v3_saturate(
+        hdrp_v3_mul(hdrp_brdf_specular_albedo(fgd, w.fresnel0, w.fresnel90), w.compensation));
+    /* The narrower width reflects most at grazing: coupled to it, diffuse light never gains. */
+    w.diffuse_fit = hdrp_brdf_fgd_fit_make(hdrp_sqrt(hdrp_min(w.alphas.t, w.alphas.b)));
+    share = hdrp_brdf_diffuse_share(w.diffuse_fit, w.n_dot_v, w.fresnel0, w.fresnel90);
+    mean = hdrp_brdf_diffuse_share_mean(w.diffuse_fit, w.fresnel0, w.fresnel90);
+    w.diffuse_albedo = hdrp_v3_mul(
+        hdrp_v3_mul(d.diffuse_color, hdrp_v3_sub(hdrp_v3_splat(1.0f), w.fresnel0)), share);
+    w.transmitted = hdrp_v3_splat(0.0f);
+    if ((features & HDRP_BRDF_FEATURE_REFRACTION) != 0u) {
+        w.diffuse_albedo = hdrp_v3_scale(w.diffuse_albedo, 1.0f - d.transmission);
+        w.transmitted =
+            hdrp_v3_scale(hdrp_v3_mul(d.diffuse_color, d.transmittance), d.transmission);
+    }
+    w.diffuse = hdrp_v3_make(HDRP_INV_PI * w.diffuse_albedo.x / mean.x,
+                             HDRP_INV_PI * w.diffuse_albedo.y / mean.y,
+                             HDRP_INV_PI * w.diffuse_albedo.z / mean.z);
+    w.coat_n_dot_v = w.n_dot_v;
+    w.below_coat = 1.0f;
+    if ((features & HDRP_BRDF_FEATURE_CLEAR_COAT) != 0u) {
+        w.coat_n_dot_v = hdrp_clamp(hdrp_v3_dot(d.coat_normal, v), HDRP_BRDF_N_DOT_V_MIN, 1.0f);
+        w.below_coat = hdrp_i_brdf_below_coat(d.coat_mask, w.coat_n_dot_v);
+    }
+    return w;
+}
+
+/** D V of the base lobe. */
+HDRP_FN float hdrp_i_brdf_lit_dv(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdrp_v3 l, hdrp_v3 h,
+                                 float n_dot_l, hdrp_u32 features)
+{
+    if ((features & HDRP_BRDF_FEATURE_ANISOTROPY) != 0u) {
+        return hdrp_brdf_d_ggx_aniso_vectors(d.tangent, d.bitangent, d.normal, h, w.alphas.t,
+                                             w.alphas.b) *
+               hdrp_brdf_v_smith_ggx_aniso(hdrp_v3_dot(d.tangent, l), hdrp_v3_dot(d.bitangent, l),
+                                           n_dot_l, hdrp_v3_dot(d.tangent, w.v),
+                                           hdrp_v3_dot(d.bitangent, w.v), w.n_dot_v, w.alphas.t,
+                                           w.alphas.b);
+    }
+    return hdrp_brdf_d_ggx_vectors(d.normal, h, w.alphas.t) *
+           hdrp_brdf_v_smith_ggx(n_dot_l, w.n_dot_v, w.alphas.t);
+}
+
+/** Fresnel term of the base for one light. */
+HDRP_FN hdrp_v3 hdrp_i_brdf_lit_f(hdrp_brdf_data d, hdrp_brdf_lit_view w, float l_dot_h,
+                                  hdrp_u32 features)
+{
+    if ((features & HDRP_BRDF_LIT_EXACT) != 0u &&
+        (features & HDRP_BRDF_FEATURE_IRIDESCENCE) != 0u) {
+        hdrp_v3 bare = hdrp_brdf_f_schlick_rgb(hdrp_i_brdf_lit_bare_fresnel0(d, features),
+                                               w.fresnel90, l_dot_h);
+        return hdrp_v3_lerp(bare, hdrp_i_brdf_lit_film(d, l_dot_h, features), d.film_mask);
+    }
+    return hdrp_brdf_f_schlick_rgb(w.fresnel0, w.fresnel90, l_dot_h);
+}
+
+/** The coat's own lobe, cosine included. */
+HDRP_FN float hdrp_i_brdf_lit_coat(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdrp_v3 h,
+                                   float coat_n_dot_l, float l_dot_h)
+{
+    float alpha = hdrp_brdf_alpha_from_perceptual_roughness(d.coat_perceptual_roughness);
+    return d.coat_mask * hdrp_brdf_f_schlick(HDRP_BRDF_COAT_FRESNEL0, 1.0f, l_dot_h) *
+           hdrp_brdf_d_ggx_vectors(d.coat_normal, h, alpha) *
+           hdrp_brdf_v_smith_ggx(coat_n_dot_l, w.coat_n_dot_v, alpha) * coat_n_dot_l;
+}
+
+/** Light refracted through a thin wall. */
+HDRP_FN hdrp_v3 hdrp_i_brdf_lit_refracted(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdrp_v3 l)
+{
+    float alpha = hdrp_brdf_alpha_from_perceptual_roughness(
+        hdrp_brdf_refraction_perceptual_roughness(d.perceptual_roughness, d.ior));
+    return hdrp_v3_scale(w.transmitted, hdrp_brdf_btdf_thin_ggx(d.normal, w.v, l, alpha,
+                                                                hdrp_v3_max_component(w.fresnel0)));
+}
+
+/** The Lit model for one light direction.
+ *  d         valid  material
+ *  w         valid  of the same material and features
+ *  l         unit   towards the light
+ *  features  any    as for hdrp_brdf_lit_view_make
+ *  returns   valid  times the light's illuminance it is reflected luminance
+ *  edges     black below the horizon, but for light through a thin slab or wall
+ *  error     none: composed of the functions above
+ *  source    Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
+ *            Definition Render Pipeline", slides on the Lit shader
+ *  note      the source scales the base under a coat by (1 - F(l_dot_h))^2 and leaves the diffuse
+ *            lobe alone, which gains energy at grazing. Here the coat dims light on its way in and
+ *            on its way out, each by the cosine of its own direction */
+HDRP_FN hdrp_brdf_lit hdrp_brdf_lit_eval(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdrp_v3 l,
+                                         hdrp_u32 features)
+{
+    hdrp_brdf_lit r;
+    float n_dot_l = hdrp_v3_dot(d.normal, l);
+    float front = hdrp_saturate(n_dot_l);
+    hdrp_v3 h = hdrp_brdf_half_vector(l, w.v, d.normal);
+    float l_dot_h = hdrp_saturate(hdrp_v3_dot(l, h));
+    hdrp_v3 f = hdrp_i_brdf_lit_f(d, w, l_dot_h, features);
+    float dv = hdrp_i_brdf_lit_dv(d, w, l, h, front, features) * front;
+    hdrp_v3 share =
+        hdrp_brdf_diffuse_share(w.diffuse_fit, hdrp_abs(n_dot_l), w.fresnel0, w.fresnel90);
+    hdrp_v3 diffuse = hdrp_v3_mul(w.diffuse, share);
+    r.specular = hdrp_v3_scale(hdrp_v3_mul(f, w.compensation), dv);
+    r.diffuse = hdrp_v3_scale(diffuse, front);
+    if ((features & HDRP_BRDF_FEATURE_TRANSMISSION) != 0u) {
+        hdrp_v3 through = hdrp_v3_mul(diffuse, d.transmittance);
+        r.diffuse = hdrp_v3_mad(r.diffuse, through, hdrp_saturate(-n_dot_l));
+    }
+    if ((features & HDRP_BRDF_FEATURE_REFRACTION) != 0u) {
+        r.specular = hdrp_v3_add(r.specular, hdrp_i_brdf_lit_refracted(d, w, l));
+    }
+    if ((features & HDRP_BRDF_FEATURE_CLEAR_COAT) != 0u) {
+        float coat_n_dot_l = hdrp_v3_dot(d.coat_normal, l);
+        float coat_front = hdrp_saturate(coat_n_dot_l);
+        float both = w.below_coat * hdrp_i_brdf_below_coat(d.coat_mask, hdrp_abs(coat_n_dot_l));
+        float coat = hdrp_i_brdf_lit_coat(d, w, h, coat_front, l_dot_h);
+        r.diffuse = hdrp_v3_scale(r.diffuse, both);
+        r.specular = hdrp_v3_add(hdrp_v3_scale(r.specular, both), hdrp_v3_splat(coat));
+    }
+    return r;
+}
+
+/* What the Lit model asks of a prefiltered environment. Reflected light is the sum of
+ *   specular_weight * radiance(specular_direction, specular_perceptual_roughness)
+ *   coat_weight * radiance(coat_direction, coat_perceptual_roughness)
+ *   diffuse_weight * irradiance(normal) / pi + through_weight * irradiance(-normal) / pi
+ *   transmitted_weight * radiance(transmitted_direction, transmitted_perceptual_roughness). */
+struct hdrp_brdf_lit_env {
+    hdrp_v3 specular_direction;             /* unit */
+    float specular_perceptual_roughness;    /* [0,1] */
+    hdrp_v3 specular_weight;                /* [0,1] */
+    hdrp_v3 coat_direction;                 /* unit */
+    float coat_perceptual_roughness;        /* [0,1] */
+    float coat_weight;                      /* [0,1] */
+    hdrp_v3 diffuse_weight;                 /* [0,1] */
+    hdrp_v3 through_weight;                 /* [0,1] */
+    hdrp_v3 transmitted_direction;          /* unit */
+    float transmitted_perceptual_roughness; /* [0,1] */
+    hdrp_v3 transmitted_weight;             /* [0,1] */
+};
+HDRP_TYPEDEF(hdrp_brdf_lit_env)
+
+/** Mirror direction of v about n. */
+HDRP_FN hdrp_v3 hdrp_i_brdf_reflect(hdrp_v3 v, hdrp_v3 n)
+{
+    return hdrp_v3_sub(hdrp_v3_scale(n, 2.0f * hdrp_v3_dot(n, v)), v);
+}
+
+/** Direction from which a GGX lobe receives most of an environment that was filtered for views
+ *  along the normal: between the mirror direction and the normal.
+ *  n          unit   shading normal
+ *  reflected  unit   mirror direction of the view
+ *  alpha      [0,1]  GGX width
+ *  returns    unit
+ *  edges      the mirror direction for alpha 0, n for alpha 1
+ *  error      none: an empirical fit of the source
+ *  source     Lagarde and de Rousiers 2014, "Moving Frostbite to Physically Based Rendering",
+ *             listing 22 */
+HDRP_FN hdrp_v3 hdrp_brdf_dominant_direction(hdrp_v3 n, hdrp_v3 reflected, float alpha)
+{
+    float smoothness = 1.0f - hdrp_saturate(alpha);
+    float t = smoothness * (hdrp_sqrt(smoothness) + hdrp_saturate(alpha));
+    return hdrp_normalize_or(hdrp_v3_lerp(n, reflected, t), n);
+}
+
+/** e with the light that a refractive material lets through. */
+HDRP_FN hdrp_brdf_lit_env hdrp_i_brdf_lit_env_set_transmitted(hdrp_brdf_lit_env e, hdrp_brdf_data d,
+                                                              hdrp_brdf_lit_view w, float below)
+{
+    hdrp_v3 f = hdrp_brdf_f_schlick_rgb(w.fresnel0, w.fresnel90, w.n_dot_v);
+    e.transmitted_perceptual_roughness =
+        hdrp_brdf_refraction_perceptual_roughness(d.perceptual_roughness, d.ior);
+    e.transmitted_weight =
+        hdrp_v3_scale(hdrp_v3_mul(w.transmitted, hdrp_v3_sub(hdrp_v3_splat(1.0f), f)), below);
+    if (d.volume_thickness_m > 0.0f) {
+        e.transmitted_direction = hdrp_brdf_refract(w.v, d.normal, 1.0f / d.ior).direction;
+    }
+    return e;
+}
+
+/** What the Lit model asks of a prefiltered environment.
+ *  d         valid  material; its occlusions are part of the weights
+ *  w         valid  of the same material and features
+ *  features  any    as for hdrp_brdf_lit_view_make
+ *  returns   valid
+ *  edges     weights of absent features are 0
+ *  error     none: composed of the functions above
+ *  source    Karis 2013, "Real Shading in Unreal Engine 4", section "Image-Based Lighting";
+ *            Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
+ *            Definition Render Pipeline", slides on the Lit shader */
+HDRP_FN hdrp_brdf_lit_env hdrp_brdf_lit_env_make(hdrp_brdf_data d, hdrp_brdf_lit_view w,
+                                                 hdrp_u32 features)
+{
+    hdrp_brdf_lit_env e;
+    hdrp_brdf_env_lobe lobe;
+    float below = w.below_coat * w.below_coat;
+    lobe.normal = d.normal;
+    lobe.perceptual_roughness = d.perceptual_roughness;
+    if ((features & HDRP_BRDF_FEATURE_ANISOTROPY) != 0u) {
+        lobe = hdrp_brdf_env_lobe_aniso(d.tangent, d.bitangent, d.normal, w.v, d.anisotropy,
+                                        d.perceptual_roughness);
+    }
+    e.specular_direction = hdrp_brdf_dominant_direction(
+        lobe.normal, hdrp_normalize_or(hdrp_i_brdf_reflect(w.v, lobe.normal), lobe.normal),
+        hdrp_brdf_alpha_from_perceptual_roughness(lobe.perceptual_roughness));
+    e.specular_perceptual_roughness = lobe.perceptual_roughness;
+    e.specular_weight = hdrp_v3_scale(w.specular_albedo, below * d.specular_occlusion);
+    e.coat_direction = d.normal;
+    e.coat_perceptual_roughness = d.coat_perceptual_roughness;
+    e.coat_weight = 0.0f;
+    if ((features & HDRP_BRDF_FEATURE_CLEAR_COAT) != 0u) {
+        e.coat_direction = hdrp_normalize_or(hdrp_i_brdf_reflect(w.v, d.coat_normal), d.normal);
+        e.coat_weight = (1.0f - w.below_coat) * d.specular_occlusion;
+    }
+    e.diffuse_weight = hdrp_v3_scale(w.diffuse_albedo, below * d.ambient_occlusion);
+    e.through_weight = hdrp_v3_splat(0.0f);
+    if ((features & HDRP_BRDF_FEATURE_TRANSMISSION) != 0u) {
+        e.through_weight = hdrp_v3_mul(e.diffuse_weight, d.transmittance);
+    }
+    e.transmitted_direction = hdrp_v3_neg(w.v);
+    e.transmitted_perceptual_roughness = d.perceptual_roughness;
+    e.transmitted_weight = hdrp_v3_splat(0.0f);
+    if ((features & HDRP_BRDF_FEATURE_REFRACTION) != 0u) {
+        e = hdrp_i_brdf_lit_env_set_transmitted(e, d, w, below);
+    }
+    return e;
+}
+
+/* >>sampling lit
+ * One direction from all lobes of the Lit model, for path tracers. */
+
+/* Relative shares of the lobes, and the sum of all. */
+struct hdrp_i_brdf_shares {
+    float coat;
+    float specular;
+    float diffuse;
+    float through;
+    float refracted;
+    float sum;
+};
+HDRP_TYPEDEF(hdrp_i_brdf_shares)
+
+HDRP_FN hdrp_i_brdf_shares hdrp_i_brdf_lit_shares(hdrp_brdf_data d, hdrp_brdf_lit_view w,
+                                                  hdrp_u32 features)
+{
+    hdrp_i_brdf_shares s;
+    float diffuse = hdrp_v3_max_component(w.diffuse_albedo) * w.below_coat;
+    float f = hdrp_brdf_f_schlick(hdrp_v3_max_component(w.fresnel0), w.fresnel90, w.n_dot_v);
+    s.coat = (features & HDRP_BRDF_FEATURE_CLEAR_COAT) != 0u ? 1.0f - w.below_coat : 0.0f;
+    s.specular = hdrp_v3_max_component(w.specular_albedo) * w.below_coat;
+    s.diffuse = diffuse;
+    s.through = (features & HDRP_BRDF_FEATURE_TRANSMISSION) != 0u
+                    ? diffuse * hdrp_v3_max_component(d.transmittance)
+                    : 0.0f;
+    s.refracted = (features & HDRP_BRDF_FEATURE_REFRACTION) != 0u
+                      ? hdrp_v3_max_component(w.transmitted) * (1.0f - f) * w.below_coat
+                      : 0.0f;
+    /* A black material still needs some lobe. */
+    s.specular = hdrp_max(s.specular, 1e-3f);
+    s.sum = s.coat + s.specular + s.diffuse + s.through + s.refracted;
+    return s;
+}
+
+/** Density of a reflected direction of a GGX lobe about a frame. */
+HDRP_FN float hdrp_i_brdf_lobe_pdf(hdrp_v3 t, hdrp_v3 b, hdrp_v3 n, hdrp_v3 v, hdrp_v3 l,
+                                   hdrp_brdf_alphas a)
+{
+    hdrp_v3 h = hdrp_brdf_half_vector(l, v, n);
+    hdrp_v3 dh = hdrp_v3_sub(h, n);
+    hdrp_v3 v_local = hdrp_v3_make(hdrp_v3_dot(t, v), hdrp_v3_dot(b, v), hdrp_v3_dot(n, v));
+    hdrp_v3 h_local = hdrp_v3_make(hdrp_v3_dot(t, dh), hdrp_v3_dot(b, dh), hdrp_v3_dot(n, h));
+    return hdrp_v3_dot(n, l) > 0.0f ? hdrp_brdf_pdf_vndf(v_local, h_local, a.t, a.b) : 0.0f;
+}
+
+/** Density of hdrp_brdf_lit_sample.
+ *  d         valid  material
+ *  w         valid  of the same material and features
+ *  l         unit   towards the light
+ *  features  any    as for hdrp_brdf_lit_view_make
+ *  returns   [0,inf)  1/sr, per solid angle
+ *  edges     0 where no lobe of the material has light
+ *  error     none: held to the sampler by a chi-squared test
+ *  source    Veach 1997, "Robust Monte Carlo Methods for Light Transport Simulation", section
+ *            9.2.2 */
+HDRP_FN float hdrp_brdf_lit_pdf(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdrp_v3 l,
+                                hdrp_u32 features)
+{
+    hdrp_i_brdf_shares s = hdrp_i_brdf_lit_shares(d, w, features);
+    float n_dot_l = hdrp_v3_dot(d.normal, l);
+    float p = s.specular * hdrp_i_brdf_lobe_pdf(d.tangent, d.bitangent, d.normal, w.v, l, w.alphas);
+    p += s.diffuse * hdrp_saturate(n_dot_l) * HDRP_INV_PI;
+    p += s.through * hdrp_saturate(-n_dot_l) * HDRP_INV_PI;
+    if ((features & HDRP_BRDF_FEATURE_CLEAR_COAT) != 0u) {
+        hdrp_basis f = hdrp_basis_from_normal(d.coat_normal);
+        hdrp_brdf_alphas a;
+        a.t = hdrp_brdf_alpha_from_perceptual_roughness(d.coat_perceptual_roughness);
+        a.b = a.t;
+        p += s.coat * hdrp_i_brdf_lobe_pdf(f.tangent, f.bitangent, d.coat_normal, w.v, l, a);
+    }
+    if ((features & HDRP_BRDF_FEATURE_REFRACTION) != 0u) {
+        hdrp_brdf_alphas a;
+        a.t = hdrp_brdf_alpha_from_perceptual_roughness(
+            hdrp_brdf_refraction_perceptual_roughness(d.perceptual_roughness, d.ior));
+        a.b = a.t;
+        p += s.refracted * hdrp_i_brdf_lobe_pdf(d.tangent, d.bitangent, d.normal, w.v,
+                                                hdrp_v3_mad(l, d.normal, -2.0f * n_dot_l), a);
+    }
+    return p / s.sum;
+}
+
+/** Mirror direction of v about a half vector drawn from a GGX lobe. */
+HDRP_FN hdrp_v3 hdrp_i_brdf_lobe_sample(hdrp_v3 t, hdrp_v3 b, hdrp_v3 n, hdrp_v3 v,
+                                        hdrp_brdf_alphas a, hdrp_v2 u)
+{
+    hdrp_v3 v_local = hdrp_v3_make(hdrp_v3_dot(t, v), hdrp_v3_dot(b, v), hdrp_v3_dot(n, v));
+    hdrp_v3 h_local = hdrp_brdf_sample_vndf(v_local, a.t, a.b, u);
+    hdrp_v3 h = hdrp_v3_mad(hdrp_v3_mad(hdrp_v3_scale(t, h_local.x), b, h_local.y), n, h_local.z);
+    return hdrp_normalize_or(hdrp_i_brdf_reflect(v, h), n);
+}
+
+/** Direction drawn in proportion, roughly, to the Lit model: for path tracers.
+ *  d         valid  material
+ *  w         valid  of the same material and features
+ *  u         [0,1]  three independent uniform numbers; the first chooses the lobe
+ *  features  any    as for hdrp_brdf_lit_view_make
+ *  returns   unit   towards a light; where hdrp_brdf_lit_eval is 0 there, the path ends
+ *  edges     total for u of 0 and 1
+ *  error     none: held to hdrp_brdf_lit_pdf by a chi-squared test
+ *  source    Veach 1997, "Robust Monte Carlo Methods for Light Transport Simulation", section
+ *            9.2.2 */
+HDRP_FN hdrp_v3 hdrp_brdf_lit_sample(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdrp_v3 u,
+                                     hdrp_u32 features)
+{
+    hdrp_i_brdf_shares s = hdrp_i_brdf_lit_shares(d, w, features);
+    float x = u.x * s.sum;
+    hdrp_v2 uv = hdrp_v2_make(u.y, u.z);
+    float phi = HDRP_TWO_PI * u.y;
+    float r = hdrp_sqrt(hdrp_saturate(u.z));
+    float side = x < s.specular + s.diffuse ? 1.0f : -1.0f;
+    float up = side * hdrp_sqrt(hdrp_max(1.0f - r * r, 0.0f));
+    hdrp_v3 l = hdrp_v3_mad(
+        hdrp_v3_mad(hdrp_v3_scale(d.tangent, r * hdrp_cos(phi)), d.bitangent, r * hdrp_sin(phi)),
+        d.normal, up);
+    if (x < s.specular) {
+        l = hdrp_i_brdf_lobe_sample(d.tangent, d.bitangent, d.normal, w.v, w.alphas, uv);
+    } else if (x >= s.specular + s.diffuse + s.through) {
+        int is_coat = x < s.specular + s.diffuse + s.through + s.coat ? 1 : 0;
+        hdrp_brdf_alphas a;
+        if (is_coat == 1) {
+            hdrp_basis f = hdrp_basis_from_normal(d.coat_normal);
+            a.t = hdrp_brdf_alpha_from_perceptual_roughness(d.coat_perceptual_roughness);
+            a.b = a.t;
+            l = hdrp_i_brdf_lobe_sample(f.tangent, f.bitangent, d.coat_normal, w.v, a, uv);
+        } else {
+            a.t = hdrp_brdf_alpha_from_perceptual_roughness(
+                hdrp_brdf_refraction_perceptual_roughness(d.perceptual_roughness, d.ior));
+            a.b = a.t;
+            l = hdrp_i_brdf_lobe_sample(d.tangent, d.bitangent, d.normal, w.v, a, uv);
+            l = hdrp_v3_mad(l, d.normal, -2.0f * hdrp_v3_dot(l, d.normal));
+        }
+    }
+    return hdrp_normalize_or(l, d.normal);
+}
+
+/* >>fgd table, C and C++ only */
+#ifndef HDRP_GPU
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** FGD by quadrature, to 1e-4 and without noise: what the table holds.
+ *  n_dot_v               [0,1]  cosine between unit normal and direction to the viewer
+ *  perceptual_roughness  [0,1]
+ *  returns               valid
+ *  edges                 inputs are limited; a grazing view below 1e-6 acts as 1e-6
+ *  error                 <= 1e-4 absolute  @accuracy brdf_fgd_integrate
+ *  source                the integrals of Karis 2013, "Real Shading in Unreal Engine 4"; the
+ *                        azimuth of the distribution in closed form, the polar angle by
+ *                        Gauss-Legendre nodes gathered at the mirror direction */
+HDRP_API hdrp_brdf_fgd hdrp_brdf_fgd_integrate(float n_dot_v, float perceptual_roughness);
+
+/** Rows of the FGD table: columns are views, rows are roughnesses, see hdrp_brdf_fgd_uv.
+ *  table      size * size texels, row by row
+ *  size       [2,4096] texels; 64 keeps a white furnace white to 0.1 % from n_dot_v 0.05 upwards
+ *  row_begin  [0,4096] first row to write
+ *  row_end    [0,4096] one past the last row to write
+ *  returns    HDRP_OK, or an error with the table untouched
+ *  errors     HDRP_ERROR_NULL_POINTER, HDRP_ERROR_BAD_ARGUMENT
+ *  memory     the caller's; nothing is allocated
+ *  range      rows are independent: jobs may write disjoint ranges of rows in parallel */
+HDRP_API hdrp_result hdrp_brdf_fgd_bake_rows(hdrp_brdf_fgd* table, int size, int row_begin,
+                                             int row_end);
+
+/** FGD from a table, bilinear.
+ *  table                 size * size texels as written by hdrp_brdf_fgd_bake_rows
+ *  size                  [2,4096] texels
+ *  n_dot_v               [0,1]  cosine between unit normal and direction to the viewer
+ *  perceptual_roughness  [0,1]
+ *  returns               valid
+ *  edges                 inputs are limited, NaN acts as 0
+ *  error                 <= 0.0015 relative, size 64 and n_dot_v of at least 0.05
+ *                        @accuracy brdf_fgd_lookup
+ *  error                 <= 0.06 absolute, size 64 at any view  @accuracy brdf_fgd_lookup_grazing
+ *  source                bilinear interpolation between texel centres */
+HDRP_API hdrp_brdf_fgd hdrp_brdf_fgd_lookup(const hdrp_brdf_fgd* table, int size, float n_dot_v,
+                                            float perceptual_roughness);
+
+#ifdef __cplusplus
+}
+#endif
+#endif /* HDRP_GPU */
 #endif /* HDRP_BRDF_H */
+
+#if defined(HDRP_BRDF_IMPLEMENTATION) && !defined(HDRP_BRDF_IMPLEMENTED)
+#define HDRP_BRDF_IMPLEMENTED
+
+/* Nodes of the quadrature of hdrp_brdf_fgd_integrate: polar on each side of the mirror direction,
+ * azimuthal on a half turn. Chosen so that its error stays below 1e-4. */
+#define HDRP_I_BRDF_POLAR_NODES   24
+#define HDRP_I_BRDF_AZIMUTH_NODES 16
+
+typedef struct hdrp_i_brdf_quadrature {
+    double x[HDRP_I_BRDF_POLAR_NODES]; /* Gauss-Legendre nodes in (-1,1) */
+    double w[HDRP_I_BRDF_POLAR_NODES];
+    double tan_half[HDRP_I_BRDF_AZIMUTH_NODES]; /* of equidistant azimuths */
+    double cosine[HDRP_I_BRDF_AZIMUTH_NODES];
+} hdrp_i_brdf_quadrature;
+
+/* The roots of the Legendre polynomial by Newton's method (Abramowitz and Stegun, 25.4.29). */
+static void hdrp_i_brdf_quadrature_init(hdrp_i_brdf_quadrature* q)
+{
+    const double pi = 3.14159265358979323846;
+    const int n = HDRP_I_BRDF_POLAR_NODES;
+    int i, j, step;
+    for (i = 0; i < n; ++i) {
+        double x = cos(pi * ((double)i + 0.75) / ((double)n + 0.5));
+        double slope = 1.0;
+        for (step = 0; step < 6; ++step) {
+            double p0 = 1.0, p1 = x;
+            for (j = 2; j <= n; ++j) {
+                double p2 = ((2.0 * j - 1.0) * x * p1 - (j - 1.0) * p0) / j;
+                p0 = p1;
+                p1 = p2;
+            }
+            slope = n * (x * p1 - p0) / (x * x - 1.0);
+            x -= p1 / slope;
+        }
+        q->x[i] = x;
+        q->w[i] = 2.0 / ((1.0 - x * x) * slope * slope);
+    }
+    for (i = 0; i < HDRP_I_BRDF_AZIMUTH_NODES; ++i) {
+        double phi = pi * ((double)i + 0.5) / HDRP_I_BRDF_AZIMUTH_NODES;
+        q->tan_half[i] = tan(0.5 * phi);
+        q->cosine[i] = cos(phi);
+    }
+}
+
+static double hdrp_i_brdf_schlick_weight_of_square(double v_dot_h2)
+{
+    double x = 1.0 - sqrt(v_dot_h2 < 1.0 ? v_dot_h2 : 1.0);
+    return x * x * x * x * x;
+}
+
+/* D integrated over the azimuth of a light at the polar angle theta_l, times alpha^-2; and the same
+ * weighted by Schlick. With base = 2 (v.h)^2 = p - r cos(azimuth) the distribution is
+ * alpha^2 / pi (base / (base + q))^2, so that the first integral is closed. The second splits into
+ * the constant part, smooth in the azimuth, and the rest, which is smooth in the half-angle
+ * variable of 1 / (base + q). */
+static void hdrp_i_brdf_azimuth(const hdrp_i_brdf_quadrature* nodes, double theta_v, double theta_l,
+                                double alpha2, double* albedo, double* schlick)
+{
+    double cs = cos(0.5 * (theta_l + theta_v)), cd = cos(0.5 * (theta_l - theta_v));
+    double ss = sin(0.5 * (theta_l + theta_v)), sd = sin(0.5 * (theta_l - theta_v));
+    double lo = 2.0 * cs * cs * (sd * sd + alpha2 * cd * cd); /* base + q, azimuth 0 */
+    double hi = 2.0 * cd * cd * (ss * ss + alpha2 * cs * cs); /* base + q, azimuth pi */
+    double q = 2.0 * cs * cs * cd * cd * (alpha2 - 1.0);
+    double p = cs * cs + cd * cd, r = sin(theta_l) * sin(theta_v);
+    double root = sqrt(lo * hi), k = sqrt(lo / hi), sum = 0.0;
+    int i;
+    for (i = 0; i < HDRP_I_BRDF_AZIMUTH_NODES; ++i) {
+        double t = nodes->tan_half[i], u2 = k * k * t * t;
+        double base_q = lo + r * 2.0 * u2 / (1.0 + u2);
+        double e = q / base_q, stretch = k * (1.0 + t * t) / (1.0 + u2);
+        sum += (e - 2.0) * e * stretch * hdrp_i_brdf_schlick_weight_of_square(0.5 * (base_q - q));
+        sum += hdrp_i_brdf_schlick_weight_of_square(0.5 * (p - r * nodes->cosine[i]));
+    }
+    *albedo = 2.0 * (1.0 - 2.0 * q / root + 0.5 * (lo + hi) * q * q / (root * root * root));
+    *schlick = 2.0 * sum / HDRP_I_BRDF_AZIMUTH_NODES;
+}
+
+/* Both halves of the hemisphere's polar angle, below and above the mirror direction. sinh gathers
+ * the nodes there: a lobe of width alpha decays over a few of its arguments. */
+static hdrp_brdf_fgd hdrp_i_brdf_integrate(const hdrp_i_brdf_quadrature* nodes, double n_dot_v,
+                                           double alpha)
+{
+    const double half_pi = 1.57079632679489661923;
+    double c = n_dot_v > 1e-6 ? (n_dot_v < 1.0 ? n_dot_v : 1.0) : 1e-6;
+    double theta_v = acos(c), alpha2 = alpha * alpha;
+    double gv = sqrt(c * c * (1.0 - alpha2) + alpha2);
+    double albedo = 0.0, schlick = 0.0;
+    hdrp_brdf_fgd result;
+    int side, i;
+    for (side = 0; side < 2; ++side) {
+        double t0 = side ? 0.0 : -asinh(theta_v / alpha);
+        double t1 = side ? asinh((half_pi - theta_v) / alpha) : 0.0;
+        for (i = 0; i < HDRP_I_BRDF_POLAR_NODES; ++i) {
+            double t = 0.5 * (t0 + t1) + 0.5 * (t1 - t0) * nodes->x[i];
+            double theta = theta_v + alpha * sinh(t);
+            double cl = cos(theta), gl = sqrt(cl * cl * (1.0 - alpha2) + alpha2);
+            double w = 0.5 * (t1 - t0) * nodes->w[i] * alpha * cosh(t) * alpha2 * cl * sin(theta) *
+                       0.5 / (cl * gv + c * gl);
+            double a, s;
+            hdrp_i_brdf_azimuth(nodes, theta_v, theta, alpha2, &a, &s);
+            albedo += w * a;
+            schlick += w * s;
+        }
+    }
+    result.albedo = (float)(albedo < 1.0 ? albedo : 1.0);
+    result.schlick = (float)(schlick < albedo ? schlick : albedo);
+    return result;
+}
+
+hdrp_brdf_fgd hdrp_brdf_fgd_integrate(float n_dot_v, float perceptual_roughness)
+{
+    hdrp_i_brdf_quadrature nodes;
+    float alpha = hdrp_brdf_alpha_from_perceptual_roughness(perceptual_roughness);
+    hdrp_i_brdf_quadrature_init(&nodes);
+    return hdrp_i_brdf_integrate(&nodes, (double)hdrp_saturate(n_dot_v), (double)alpha);
+}
+
+hdrp_result hdrp_brdf_fgd_bake_rows(hdrp_brdf_fgd* table, int size, int row_begin, int row_end)
+{
+    hdrp_i_brdf_quadrature nodes;
+    int row, column;
+    if (!table) {
+        return HDRP_ERROR_NULL_POINTER;
+    }
+    if (size < 2 || size > 4096 || row_begin < 0 || row_end > size || row_begin > row_end) {
+        return HDRP_ERROR_BAD_ARGUMENT;
+    }
+    hdrp_i_brdf_quadrature_init(&nodes);
+    for (row = row_begin; row < row_end; ++row) {
+        float perceptual_roughness = (float)row / (float)(size - 1);
+        float alpha = hdrp_brdf_alpha_from_perceptual_roughness(perceptual_roughness);
+        for (column = 0; column < size; ++column) {
+            double u = (double)column / (double)(size - 1);
+            table[(size_t)row * (size_t)size + (size_t)column] =
+                hdrp_i_brdf_integrate(&nodes, u * u, (double)alpha);
+        }
+    }
+    return HDRP_OK;
+}
+
+hdrp_brdf_fgd hdrp_brdf_fgd_lookup(const hdrp_brdf_fgd* table, int size, float n_dot_v,
+                                   float perceptual_roughness)
+{
+    float last = (float)(size - 1);
+    float x = hdrp_sqrt(hdrp_saturate(n_dot_v)) * last;
+    float y = hdrp_saturate(perceptual_roughness) * last;
+    int i = x < last ? (int)x : size - 2, j = y < last ? (int)y : size - 2;
+    float fx = x - (float)i, fy = y - (float)j;
+    const hdrp_brdf_fgd* at = table + (size_t)j * (size_t)size + (size_t)i;
+    const hdrp_brdf_fgd* next = at + size;
+    hdrp_brdf_fgd r;
+    r.albedo = hdrp_lerp(hdrp_lerp(at[0].albedo, at[1].albedo, fx),
+                         hdrp_lerp(next[0].albedo, next[1].albedo, fx), fy);
+    r.schlick = hdrp_lerp(hdrp_lerp(at[0].schlick, at[1].schlick, fx),
+                          hdrp_lerp(next[0].schlick, next[1].schlick, fx), fy);
+    return r;
+}
+
+#endif /* HDRP_BRDF_IMPLEMENTATION */

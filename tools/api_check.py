@@ -28,7 +28,8 @@ OPENING_LINES = 80
 DEPENDENCIES = {
     "math": "",
     "light": "math",
-    "brdf": "math",
+    "brdf_lobes": "math",
+    "brdf": "math brdf_lobes",
     "oit": "math",
     "sss": "math",
     "env": "math",

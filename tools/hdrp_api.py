@@ -404,6 +404,10 @@ def matching(code, start, pair):
     return -1
 
 
+# A topic that outgrew its header stands in one of its own and keeps the names: topic -> header.
+SPLIT_FROM = {"brdf_lobes": "brdf"}
+
+
 class Header:
     """One header, parsed on demand."""
 
@@ -422,7 +426,8 @@ class Header:
     @property
     def prefix(self):
         """What every public function and type of the header begins with."""
-        return "hdrp_" if self.module == "math" else f"hdrp_{self.module}_"
+        module = SPLIT_FROM.get(self.module, self.module)
+        return "hdrp_" if module == "math" else f"hdrp_{module}_"
 
     def line_of(self, offset):
         return self.text.count("\n", 0, offset) + 1

@@ -1,0 +1,1387 @@
+/* hdrp_brdf_lobes.h - Fresnel terms, GGX, directional albedo, diffuse, thin film, transmission.
+ * SPDX-License-Identifier: MIT
+ *
+ * The lobes that hdrp_brdf.h builds its material from, each usable alone: scalars and vectors in,
+ * values out, no material structs. See hdrp_math.h for the languages, the conventions and the
+ * override macros.
+ *
+ *     float d = hdrp_brdf_d_ggx_vectors(n, h, alpha);
+ *     float v = hdrp_brdf_v_smith_ggx(n_dot_l, n_dot_v, alpha);
+ *     hdrp_v3 f = hdrp_brdf_f_schlick_rgb(fresnel0, 1.0f, l_dot_h);
+ *
+ * Roughness is never bare: perceptual_roughness is what artists set, alpha is its square.
+ * Directions point away from the surface. Where a function has variants, the plain name is the
+ * recommended one, _fast costs less, _exact costs more; the docstrings say what that buys.
+ *
+ * >>index of the functions, without hdrp_brdf_ (written by tools/api_check.py --write)
+ *   fresnel: schlick_weight fresnel90 f_schlick f_schlick_rgb f_dielectric_exact f_conductor_exact
+ *       fresnel0_from_ior ior_from_fresnel0 fresnel0_at_interface fresnel0_under_coat
+ *       fresnel0_under_coat_fast refracted_cosine
+ *   ggx: alpha_from_perceptual_roughness half_vector sin2_between d_ggx d_ggx_vectors v_smith_ggx
+ *       v_smith_ggx_fast d_ggx_aniso d_ggx_aniso_vectors v_smith_ggx_aniso
+ *   sampling ggx: sample_vndf pdf_vndf
+ *   anisotropy: alphas_kulla alphas_disney kulla_from_alphas env_lobe_aniso
+ *   directional albedo: fgd_uv fgd_fit_make fgd_from_fit fgd_fast energy_compensation
+ *       specular_albedo
+ *   diffuse: diffuse_disney diffuse_disney_normalized diffuse_share diffuse_share_mean diffuse
+ *   thin film: film film_exact film_airy film_fast fresnel0_from_schlick
+ *   transmission: refract volume_transmittance refraction_perceptual_roughness btdf_ggx
+ *       btdf_thin_ggx
+ *   specular antialiasing: variance_from_derivatives variance_from_average_normal
+ *       perceptual_roughness_filtered
+ *   occlusion: specular_occlusion
+ * >>end */
+#ifndef HDRP_BRDF_LOBES_H
+#define HDRP_BRDF_LOBES_H
+
+#include "hdrp_math.h"
+
+#if HDRP_VERSION != 100
+#error "hdrp_brdf_lobes.h 0.1.0 needs the hdrp_math.h of the same version"
+#endif
+
+/* Narrowest GGX lobe. Every function of alpha treats a smaller one as this. */
+#define HDRP_ALPHA_MIN 1e-4f
+/* Smallest perceptual roughness whose alpha is HDRP_ALPHA_MIN. */
+#define HDRP_PERCEPTUAL_ROUGHNESS_MIN 0.01f
+/* The coat is a polyurethane or glass layer. */
+#define HDRP_BRDF_COAT_IOR      1.5f
+#define HDRP_BRDF_COAT_FRESNEL0 0.04f
+
+/* >>fresnel
+ * Schlick for real-time work, the exact equations where a reference is wanted. */
+
+/* F0 below which no real dielectric lies (IOR 1.33 is 0.02): taken as specular occlusion. */
+#define HDRP_BRDF_FRESNEL0_PHYSICAL_MIN 0.02f
+
+/** Fifth power of 1 - u: the weight of Schlick's approximation.
+ *  u        [0,1]  cosine between light and half vector
+ *  returns  [0,1]  1 at grazing, 0 at normal incidence
+ *  edges    u outside [0,1], as rounding makes it, is limited
+ *  error    <= 4e-7 relative  @accuracy brdf_schlick_weight
+ *  source   Schlick 1994, "An Inexpensive BRDF Model for Physically-based Rendering", eq. 15 */
+HDRP_FN float hdrp_brdf_schlick_weight(float u)
+{
+    float x = hdrp_saturate(1.0f - u);
+    float x2 = x * x;
+    return x2 * x2 * x;
+}
+
+/** Reflectance at grazing incidence that belongs to F0.
+ *  fresnel0  [0,1]  per component
+ *  returns   [0,1]  1 for every real material
+ *  edges     0 for black, so that a surface without specular has none at grazing either
+ *  error     none: definition
+ *  source    Lagarde and de Rousiers 2014, "Moving Frostbite to Physically Based Rendering",
+ *            section 3.1.2 */
+HDRP_FN float hdrp_brdf_fresnel90(hdrp_v3 fresnel0)
+{
+    return hdrp_saturate(hdrp_v3_max_component(fresnel0) *
+                         (1.0f / HDRP_BRDF_FRESNEL0_PHYSICAL_MIN));
+}
+
+/** Schlick's Fresnel reflectance.
+ *  fresnel0   [0,1]  reflectance at normal incidence
+ *  fresnel90  [0,1]  reflectance at grazing incidence, see hdrp_brdf_fresnel90
+ *  u          [0,1]  cosine between light and half vector
+ *  returns    [0,1]
+ *  edges      exactly fresnel0 at u = 1 and fresnel90 at u = 0; u is limited to [0,1]
+ *  error      <= 6e-7 absolute against Schlick in double  @accuracy brdf_f_schlick
+ *  source     Schlick 1994, "An Inexpensive BRDF Model for Physically-based Rendering", eq. 15
+ *  note       against the true dielectric Fresnel term the approximation itself is off by up to
+ *             0.036 (IOR 1.5), 0.060 (1.33), 0.125 (3); see hdrp_brdf_f_dielectric_exact */
+HDRP_FN float hdrp_brdf_f_schlick(float fresnel0, float fresnel90, float u)
+{
+    return hdrp_lerp(fresnel0, fresnel90, hdrp_brdf_schlick_weight(u));
+}
+
+/** Schlick's Fresnel reflectance of a coloured surface.
+ *  fresnel0   [0,1]  reflectance at normal incidence
+ *  fresnel90  [0,1]  reflectance at grazing incidence, see hdrp_brdf_fresnel90
+ *  u          [0,1]  cosine between light and half vector
+ *  returns    [0,1]  per component
+ *  edges      as hdrp_brdf_f_schlick
+ *  error      none: hdrp_brdf_f_schlick by component
+ *  source     Schlick 1994, "An Inexpensive BRDF Model for Physically-based Rendering", eq. 15 */
+HDRP_FN hdrp_v3 hdrp_brdf_f_schlick_rgb(hdrp_v3 fresnel0, float fresnel90, float u)
+{
+    return hdrp_v3_lerp(fresnel0, hdrp_v3_splat(fresnel90), hdrp_brdf_schlick_weight(u));
+}
+
+/** Unpolarised Fresnel reflectance between two dielectrics.
+ *  cos_theta_i  [0,1]       cosine of the angle of incidence
+ *  eta          [0.25,4]    IOR of the far side over IOR of the side the light is on
+ *  returns      [0,1]       1 at total internal reflection
+ *  edges        0 for eta = 1; 1 at grazing incidence otherwise
+ *  error        <= 1.5e-6 absolute  @accuracy brdf_f_dielectric_exact
+ *  source       Born and Wolf 1999, "Principles of Optics", section 1.5.2, eq. 20 and 21
+ *  note         each amplitude is multiplied by its conjugate factor, so that nothing cancels for
+ *               eta close to 1 */
+HDRP_FN float hdrp_brdf_f_dielectric_exact(float cos_theta_i, float eta)
+{
+    float c = hdrp_saturate(cos_theta_i);
+    float e = (eta - 1.0f) * (eta + 1.0f);
+    float g2 = e + c * c;
+    float g = hdrp_sqrt(hdrp_max(g2, 0.0f));
+    float s = c + g;
+    float p = eta * eta * c + g;
+    float rs = -e / hdrp_max(s * s, HDRP_FLT_MIN);
+    float rp = e * ((eta * eta + 1.0f) * c * c - 1.0f) / hdrp_max(p * p, HDRP_FLT_MIN);
+    return g2 > 0.0f ? hdrp_saturate(0.5f * (rs * rs + rp * rp)) : (e < 0.0f ? 1.0f : 0.0f);
+}
+
+/** Unpolarised Fresnel reflectance of a conductor in air.
+ *  cos_theta_i  [0,1]       cosine of the angle of incidence
+ *  eta          [0.01,20]   real part of the conductor's IOR over that of the outer medium
+ *  kappa        [0,20]      imaginary part (extinction) over the IOR of the outer medium
+ *  returns      [0,1]       for one wavelength or colour channel
+ *  edges        1 at grazing incidence, except 0 for eta = 1 and kappa = 0
+ *  error        <= 2e-6 absolute  @accuracy brdf_f_conductor_exact
+ *  source       Lagarde 2013, "Memo on Fresnel equations", section "Dielectric-Conductor"
+ *  note         a or b, whichever would cancel, is formed from the product a * b = eta * kappa */
+HDRP_FN float hdrp_brdf_f_conductor_exact(float cos_theta_i, float eta, float kappa)
+{
+    float c = hdrp_saturate(cos_theta_i);
+    float c2 = c * c;
+    float s2 = (1.0f - c) * (1.0f + c);
+    float m = (eta - kappa) * (eta + kappa) - s2;
+    float ek = eta * kappa;
+    float a2b2 = hdrp_sqrt(m * m + 4.0f * ek * ek);
+    float large = hdrp_sqrt(0.5f * (a2b2 + hdrp_abs(m)));
+    float a = m > 0.0f ? large : ek / hdrp_max(large, HDRP_FLT_MIN);
+    float t2 = 2.0f * a * c;
+    float rs = (a2b2 + c2 - t2) / hdrp_max(a2b2 + c2 + t2, HDRP_FLT_MIN);
+    float t3 = c2 * a2b2 + s2 * s2;
+    float rp = (t3 - t2 * s2) / hdrp_max(t3 + t2 * s2, HDRP_FLT_MIN);
+    return hdrp_saturate(0.5f * rs * (1.0f + rp));
+}
+
+/** Reflectance at normal incidence of the interface between two dielectrics.
+ *  transmitted_ior  [0.1,4e7]  IOR of the far side
+ *  incident_ior     [0.1,10]   IOR of the side the light is on
+ *  returns          [0,1]
+ *  edges            0 for equal IORs
+ *  error            <= 2.5e-7 absolute  @accuracy brdf_fresnel0_from_ior
+ *  source           Lagarde 2013, "Memo on Fresnel equations", section "Fresnel at 0 degrees" */
+HDRP_FN float hdrp_brdf_fresnel0_from_ior(float transmitted_ior, float incident_ior)
+{
+    return hdrp_sq((transmitted_ior - incident_ior) / (transmitted_ior + incident_ior));
+}
+
+/** IOR of a dielectric in air with the given reflectance at normal incidence.
+ *  fresnel0  [0,1]
+ *  returns   [1,3.4e7]
+ *  edges     the pole at 1 is kept finite: 1 gives 3.3e7, whose F0 is 1 again
+ *  error     <= 1.5e-7 absolute, in the F0 of the result  @accuracy brdf_ior_from_fresnel0
+ *  source    Lagarde 2013, "Memo on Fresnel equations", section "Fresnel at 0 degrees" */
+HDRP_FN float hdrp_brdf_ior_from_fresnel0(float fresnel0)
+{
+    float s = hdrp_sqrt(hdrp_saturate(fresnel0));
+    return (1.0f + s) / hdrp_max(1.0f - s, 0.5f * HDRP_FLT_EPSILON);
+}
+
+/** F0 of a dielectric when the medium above it is not air.
+ *  fresnel0      [0,1]   reflectance at normal incidence against air
+ *  incident_ior  [1,3]   IOR of the medium above
+ *  returns       [0,1]   reflectance at normal incidence of the interface
+ *  edges         1 stays 1 and needs no infinite IOR; 0 where the IORs are equal
+ *  error         <= 3e-7 absolute  @accuracy brdf_fresnel0_at_interface
+ *  source        Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
+ *                Definition Render Pipeline", slides on clear coat
+ *  note          the two conversions of the source in one, in which the pole at 1 cancels */
+HDRP_FN float hdrp_brdf_fresnel0_at_interface(float fresnel0, float incident_ior)
+{
+    float s = hdrp_sqrt(hdrp_saturate(fresnel0));
+    float down = 1.0f - incident_ior;
+    float up = 1.0f + incident_ior;
+    return hdrp_sq((down + up * s) / (up + down * s));
+}
+
+/** F0 of the base under a clear coat of IOR 1.5, exactly.
+ *  fresnel0  [0,1]  against air, per component
+ *  returns   [0,1]  against the coat, per component
+ *  edges     0 at 0.04 (the base has the coat's IOR) and 1 at 1; rises again below 0.04
+ *  error     none: hdrp_brdf_fresnel0_at_interface by component
+ *  source    Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
+ *            Definition Render Pipeline", slides on clear coat */
+HDRP_FN hdrp_v3 hdrp_brdf_fresnel0_under_coat(hdrp_v3 fresnel0)
+{
+    return hdrp_v3_make(hdrp_brdf_fresnel0_at_interface(fresnel0.x, HDRP_BRDF_COAT_IOR),
+                        hdrp_brdf_fresnel0_at_interface(fresnel0.y, HDRP_BRDF_COAT_IOR),
+                        hdrp_brdf_fresnel0_at_interface(fresnel0.z, HDRP_BRDF_COAT_IOR));
+}
+
+/** F0 of the base under a clear coat of IOR 1.5: the talk's cubic, three multiply-adds.
+ *  fresnel0  [0,1]  against air
+ *  returns   [0,1]  against the coat
+ *  edges     0 below 0.066, 0.9963 at 1
+ *  error     <= 0.042 absolute  @accuracy brdf_fresnel0_under_coat_fast
+ *  source    Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
+ *            Definition Render Pipeline", slides on clear coat
+ *  note      from 0.04 upwards the error is 3.8e-3 at most; below, the exact form rises again */
+HDRP_FN float hdrp_brdf_fresnel0_under_coat_fast(float fresnel0)
+{
+    float f = fresnel0;
+    return hdrp_saturate(-0.0256868f + f * (0.326846f + (0.978946f - 0.283835f * f) * f));
+}
+
+/** Cosine of the angle on the far side of an interface.
+ *  cos_theta  [0,1]      on the near side
+ *  eta        [0.25,4e7] IOR of the far side over IOR of the near side
+ *  returns    [0,1]
+ *  edges      0 at and beyond the critical angle; 1 at normal incidence
+ *  error      <= 3e-7 absolute, of the sine of the angle  @accuracy brdf_refracted_cosine
+ *  source     Born and Wolf 1999, "Principles of Optics", section 1.5.1 (Snell's law) */
+HDRP_FN float hdrp_brdf_refracted_cosine(float cos_theta, float eta)
+{
+    float sine = hdrp_sqrt(hdrp_max((1.0f - cos_theta) * (1.0f + cos_theta), 0.0f)) / eta;
+    return hdrp_sqrt(hdrp_max((1.0f - sine) * (1.0f + sine), 0.0f));
+}
+
+/* >>ggx
+ * D and V of the microfacet model D * V * F. Where the half vector is at hand, prefer the forms
+ * that take vectors: an fp32 cosine close to 1 no longer carries the angle, so that a highlight
+ * narrower than perceptual roughness 0.1 is noise when made from n_dot_h. */
+
+/* Floor of the denominator of V. It is reached only where both cosines are below 1e-6, keeps
+ * D * V finite there, and lets the product with n_dot_l = 0 be 0. */
+#define HDRP_BRDF_V_DENOMINATOR_MIN 1e-10f
+
+/** Alpha, the GGX width, of a perceptual roughness.
+ *  perceptual_roughness  [0,1]
+ *  returns               [HDRP_ALPHA_MIN,1]
+ *  edges                 below HDRP_PERCEPTUAL_ROUGHNESS_MIN the result is HDRP_ALPHA_MIN
+ *  error                 <= 1.2e-7 relative  @accuracy brdf_alpha_from_perceptual_roughness
+ *  source                Burley 2012, "Physically-Based Shading at Disney", section 5.4 */
+HDRP_FN float hdrp_brdf_alpha_from_perceptual_roughness(float perceptual_roughness)
+{
+    return hdrp_max(hdrp_sq(hdrp_saturate(perceptual_roughness)), HDRP_ALPHA_MIN);
+}
+
+/** Unit half vector of two unit directions.
+ *  l        unit  towards the light
+ *  v        unit  towards the viewer
+ *  n        unit  what to return when l = -v leaves the half vector undefined
+ *  returns  unit
+ *  edges    l = -v gives n
+ *  error    <= 1.5e-7 absolute, per component, for l and v as given where |l + v| >= 1e-3
+ *           @accuracy brdf_half_vector
+ *  source   Torrance and Sparrow 1967, "Theory for Off-Specular Reflection from Roughened
+ *           Surfaces", section 2 */
+HDRP_FN hdrp_v3 hdrp_brdf_half_vector(hdrp_v3 l, hdrp_v3 v, hdrp_v3 n)
+{
+    return hdrp_normalize_or(hdrp_v3_add(l, v), n);
+}
+
+/** Squared sine of the angle between two unit vectors, precise for the smallest angles.
+ *  n        unit
+ *  h        unit
+ *  returns  [0,1]
+ *  edges    0 for h = n and for h = -n
+ *  error    <= 1.5e-6 relative, angles of 1e-5 to 1.5 rad, for n and h as given
+ *           @accuracy brdf_sin2_between
+ *  source   Lagrange's identity, |n|^2 |h|^2 - (n.h)^2 = |n x h|^2
+ *  note     n x h = n x (h - n), and h - n is exact where it is small: a plain cross product, or
+ *           1 - cos^2, loses the angle to rounding */
+HDRP_FN float hdrp_brdf_sin2_between(hdrp_v3 n, hdrp_v3 h)
+{
+    hdrp_v3 c = hdrp_v3_cross(n, hdrp_v3_sub(h, n));
+    return hdrp_min(hdrp_v3_dot(c, c), 1.0f);
+}
+
+/** Isotropic GGX (Trowbridge-Reitz) normal distribution from a cosine.
+ *  n_dot_h  [0,1]      cosine between unit normal and unit half vector
+ *  alpha    [0,1]      GGX width
+ *  returns  [0,3.2e7]  1/sr; D * n_dot_h integrates to 1 over the hemisphere
+ *  edges    alpha below HDRP_ALPHA_MIN acts as HDRP_ALPHA_MIN
+ *  error    <= 2e-6 relative for n_dot_h as given  @accuracy brdf_d_ggx
+ *  source   Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces", eq. 33
+ *  note     (1-c)(1+c) does not cancel in the highlight. The input does: rounding n_dot_h alone
+ *           costs 1e-3 at perceptual roughness 0.1 and everything below 0.03 */
+HDRP_FN float hdrp_brdf_d_ggx(float n_dot_h, float alpha)
+{
+    float a = hdrp_max(alpha, HDRP_ALPHA_MIN);
+    float ca = n_dot_h * a;
+    float k = a / ((1.0f - n_dot_h) * (1.0f + n_dot_h) + ca * ca);
+    return k * k * HDRP_INV_PI;
+}
+
+/** Isotropic GGX normal distribution from vectors, precise at any width.
+ *  n        unit       shading normal
+ *  h        unit       half vector
+ *  alpha    [0,1]      GGX width
+ *  returns  [0,3.2e7]  1/sr
+ *  edges    alpha below HDRP_ALPHA_MIN acts as HDRP_ALPHA_MIN; a half vector below the horizon
+ *           counts as its mirror image above
+ *  error    <= 2e-6 relative for n and h as given  @accuracy brdf_d_ggx_vectors
+ *  error    <= 4e-3 relative against the h before it was rounded  @accuracy brdf_d_ggx_unrounded
+ *  source   Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces", eq.
+ *           33 */
+HDRP_FN float hdrp_brdf_d_ggx_vectors(hdrp_v3 n, hdrp_v3 h, float alpha)
+{
+    float a = hdrp_max(alpha, HDRP_ALPHA_MIN);
+    float a2 = a * a;
+    float k = a / (a2 + hdrp_brdf_sin2_between(n, h) * (1.0f - a2));
+    return k * k * HDRP_INV_PI;
+}
+
+/** Height-correlated Smith visibility of isotropic GGX: G2 / (4 n_dot_l n_dot_v).
+ *  n_dot_l  [0,1]    cosine between unit normal and direction to the light
+ *  n_dot_v  [0,1]    cosine between unit normal and direction to the viewer
+ *  alpha    [0,1]    GGX width
+ *  returns  [0,5e9]
+ *  edges    exact down to n_dot_l + n_dot_v of 1e-6; limited to 5e9 below
+ *  error    <= 6e-7 relative  @accuracy brdf_v_smith_ggx
+ *  source   Heitz 2014, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs",
+ *           eq. 72 and 99 */
+HDRP_FN float hdrp_brdf_v_smith_ggx(float n_dot_l, float n_dot_v, float alpha)
+{
+    float a = hdrp_max(alpha, HDRP_ALPHA_MIN);
+    float a2 = a * a;
+    float lambda_v = n_dot_l * hdrp_sqrt(n_dot_v * n_dot_v * (1.0f - a2) + a2);
+    float lambda_l = n_dot_v * hdrp_sqrt(n_dot_l * n_dot_l * (1.0f - a2) + a2);
+    return 0.5f / hdrp_max(lambda_v + lambda_l, HDRP_BRDF_V_DENOMINATOR_MIN);
+}
+
+/** Visibility of isotropic GGX without square roots.
+ *  n_dot_l  [0,1]    cosine between unit normal and direction to the light
+ *  n_dot_v  [0,1]    cosine between unit normal and direction to the viewer
+ *  alpha    [0,1]    GGX width
+ *  returns  [0,5e9]
+ *  edges    as hdrp_brdf_v_smith_ggx
+ *  error    <= 0.5 relative, cosines of at least 0.1  @accuracy brdf_v_smith_ggx_fast
+ *  source   Hammon 2017, "PBR Diffuse Lighting for GGX+Smith Microsurfaces", slide 83 */
+HDRP_FN float hdrp_brdf_v_smith_ggx_fast(float n_dot_l, float n_dot_v, float alpha)
+{
+    float a = hdrp_max(alpha, HDRP_ALPHA_MIN);
+    float d = hdrp_lerp(2.0f * n_dot_l * n_dot_v, n_dot_l + n_dot_v, a);
+    return 0.5f / hdrp_max(d, HDRP_BRDF_V_DENOMINATOR_MIN);
+}
+
+/** Anisotropic GGX normal distribution from the half vector in the tangent frame.
+ *  t_dot_h  [-1,1]     along the tangent
+ *  b_dot_h  [-1,1]     along the bitangent
+ *  n_dot_h  [0,1]      along the normal
+ *  alpha_t  [0,2]      GGX width along the tangent
+ *  alpha_b  [0,2]      GGX width along the bitangent
+ *  returns  [0,3.2e7]  1/sr
+ *  edges    a width below HDRP_ALPHA_MIN acts as HDRP_ALPHA_MIN; 0 for a half vector of length 0
+ *  error    <= 2e-6 relative for the arguments as given  @accuracy brdf_d_ggx_aniso
+ *  source   Burley 2012, "Physically-Based Shading at Disney", appendix B, eq. 13; arrangement by
+ *           McAuley 2015, "Rendering the World of Far Cry 4"
+ *  note     a2 (a2/s)^2 and not a2^3/s^2: the cube underflows at widths that are in use */
+HDRP_FN float hdrp_brdf_d_ggx_aniso(float t_dot_h, float b_dot_h, float n_dot_h, float alpha_t,
+                                    float alpha_b)
+{
+    float at = hdrp_max(alpha_t, HDRP_ALPHA_MIN);
+    float ab = hdrp_max(alpha_b, HDRP_ALPHA_MIN);
+    float a2 = at * ab;
+    float vt = ab * t_dot_h;
+    float vb = at * b_dot_h;
+    float vn = a2 * n_dot_h;
+    float s = vt * vt + vb * vb + vn * vn;
+    float r = a2 / hdrp_max(s, HDRP_FLT_MIN);
+    return s > 0.0f ? HDRP_INV_PI * a2 * (r * r) : 0.0f;
+}
+
+/** Anisotropic GGX normal distribution from vectors, precise at any width.
+ *  t        unit       tangent, orthogonal to n
+ *  b        unit       bitangent, orthogonal to n and t
+ *  n        unit       shading normal
+ *  h        unit       half vector
+ *  alpha_t  [0,2]      GGX width along the tangent
+ *  alpha_b  [0,2]      GGX width along the bitangent
+ *  returns  [0,3.2e7]  1/sr
+ *  edges    as hdrp_brdf_d_ggx_aniso
+ *  error    <= 2e-6 relative for a frame and h as given  @accuracy brdf_d_ggx_aniso_vectors
+ *  source   Burley 2012, "Physically-Based Shading at Disney", appendix B, eq. 13
+ *  note     t.h = t.(h - n) in an orthogonal frame, whose small terms do not cancel */
+HDRP_FN float hdrp_brdf_d_ggx_aniso_vectors(hdrp_v3 t, hdrp_v3 b, hdrp_v3 n, hdrp_v3 h,
+                                            float alpha_t, float alpha_b)
+{
+    hdrp_v3 d = hdrp_v3_sub(h, n);
+    return hdrp_brdf_d_ggx_aniso(hdrp_v3_dot(t, d), hdrp_v3_dot(b, d),
+                                 hdrp_saturate(hdrp_v3_dot(n, h)), alpha_t, alpha_b);
+}
+
+/** Height-correlated Smith visibility of anisotropic GGX.
+ *  t_dot_l  [-1,1]   light direction along the tangent
+ *  b_dot_l  [-1,1]   light direction along the bitangent
+ *  n_dot_l  [0,1]    light direction along the normal
+ *  t_dot_v  [-1,1]   view direction along the tangent
+ *  b_dot_v  [-1,1]   view direction along the bitangent
+ *  n_dot_v  [0,1]    view direction along the normal
+ *  alpha_t  [0,2]    GGX width along the tangent
+ *  alpha_b  [0,2]    GGX width along the bitangent
+ *  returns  [0,5e9]
+ *  edges    as hdrp_brdf_v_smith_ggx
+ *  error    <= 6e-7 relative  @accuracy brdf_v_smith_ggx_aniso
+ *  source   Heitz 2014, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs",
+ *           section 5.3 and eq. 99 */
+HDRP_FN float hdrp_brdf_v_smith_ggx_aniso(float t_dot_l, float b_dot_l, float n_dot_l,
+                                          float t_dot_v, float b_dot_v, float n_dot_v,
+                                          float alpha_t, float alpha_b)
+{
+    float at = hdrp_max(alpha_t, HDRP_ALPHA_MIN);
+    float ab = hdrp_max(alpha_b, HDRP_ALPHA_MIN);
+    float gv = hdrp_sqrt(hdrp_sq(at * t_dot_v) + hdrp_sq(ab * b_dot_v) + n_dot_v * n_dot_v);
+    float gl = hdrp_sqrt(hdrp_sq(at * t_dot_l) + hdrp_sq(ab * b_dot_l) + n_dot_l * n_dot_l);
+    return 0.5f / hdrp_max(n_dot_l * gv + n_dot_v * gl, HDRP_BRDF_V_DENOMINATOR_MIN);
+}
+
+/* >>sampling ggx
+ * In a local frame: x along the tangent, y along the bitangent, z along the normal. */
+
+/** Half vector drawn from the normals that are visible from v.
+ *  v        unit   local direction to the viewer, z >= 0
+ *  alpha_t  [0,2]  GGX width along the tangent
+ *  alpha_b  [0,2]  GGX width along the bitangent
+ *  u        [0,1]  two independent uniform numbers
+ *  returns  unit   local half vector, z >= 0
+ *  edges    total for grazing v and for u of 0 and 1; below HDRP_ALPHA_MIN as at it
+ *  error    none: the distribution is held to hdrp_brdf_pdf_vndf by a chi-squared test
+ *  source   Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", listing
+ *           3 */
+HDRP_FN hdrp_v3 hdrp_brdf_sample_vndf(hdrp_v3 v, float alpha_t, float alpha_b, hdrp_v2 u)
+{
+    float at = hdrp_max(alpha_t, HDRP_ALPHA_MIN);
+    float ab = hdrp_max(alpha_b, HDRP_ALPHA_MIN);
+    hdrp_v3 up = hdrp_v3_make(0.0f, 0.0f, 1.0f);
+    hdrp_v3 s = hdrp_normalize_or(hdrp_v3_make(at * v.x, ab * v.y, hdrp_max(v.z, 0.0f)), up);
+    float phi = HDRP_TWO_PI * u.x;
+    float z = (1.0f - u.y) * (1.0f + s.z) - s.z;
+    float r = hdrp_sqrt(hdrp_max((1.0f - z) * (1.0f + z), 0.0f));
+    hdrp_v3 h = hdrp_v3_make(r * hdrp_cos(phi) + s.x, r * hdrp_sin(phi) + s.y, z + s.z);
+    return hdrp_normalize_or(hdrp_v3_make(at * h.x, ab * h.y, hdrp_max(h.z, 0.0f)), up);
+}
+
+/** Density of the reflected directions of hdrp_brdf_sample_vndf.
+ *  v        unit       local direction to the viewer, z >= 0
+ *  h        unit       local half vector, z >= 0
+ *  alpha_t  [0,2]      GGX width along the tangent
+ *  alpha_b  [0,2]      GGX width along the bitangent
+ *  returns  [0,1.7e11] 1/sr, per solid angle of l = 2 (v.h) h - v
+ *  edges    no division by the cosine of v: finite at grazing
+ *  error    <= 2.5e-6 relative  @accuracy brdf_pdf_vndf
+ *  source   Heitz 2018, "Sampling the GGX Distribution of Visible Normals", eq. 17 */
+HDRP_FN float hdrp_brdf_pdf_vndf(hdrp_v3 v, hdrp_v3 h, float alpha_t, float alpha_b)
+{
+    float at = hdrp_max(alpha_t, HDRP_ALPHA_MIN);
+    float ab = hdrp_max(alpha_b, HDRP_ALPHA_MIN);
+    float nv = hdrp_max(v.z, 0.0f);
+    float g = nv + hdrp_sqrt(hdrp_sq(at * v.x) + hdrp_sq(ab * v.y) + nv * nv);
+    float d = hdrp_brdf_d_ggx_aniso(h.x, h.y, hdrp_max(h.z, 0.0f), at, ab);
+    return 0.5f * d / hdrp_max(g, HDRP_FLT_MIN);
+}
+
+/* >>anisotropy */
+
+/* GGX widths along the tangent and the bitangent. */
+struct hdrp_brdf_alphas {
+    float t; /* [HDRP_ALPHA_MIN,2] */
+    float b; /* [HDRP_ALPHA_MIN,2] */
+};
+HDRP_TYPEDEF(hdrp_brdf_alphas)
+
+/** GGX widths in the parametrisation of Kulla and Conty: the one the Lit model uses.
+ *  perceptual_roughness  [0,1]   of the mean width
+ *  anisotropy            [-1,1]  > 0 stretches the highlight along the tangent
+ *  returns               [HDRP_ALPHA_MIN,2]
+ *  edges                 at +-1 one width is HDRP_ALPHA_MIN, the other twice the mean
+ *  error                 <= 1.2e-7 absolute  @accuracy brdf_alphas_kulla
+ *  source                Kulla and Conty 2017, "Revisiting Physically Based Shading at Imageworks",
+ *                        slide on anisotropy */
+HDRP_FN hdrp_brdf_alphas hdrp_brdf_alphas_kulla(float perceptual_roughness, float anisotropy)
+{
+    hdrp_brdf_alphas a;
+    float alpha = hdrp_brdf_alpha_from_perceptual_roughness(perceptual_roughness);
+    float k = hdrp_clamp(anisotropy, -1.0f, 1.0f);
+    a.t = hdrp_max(alpha * (1.0f + k), HDRP_ALPHA_MIN);
+    a.b = hdrp_max(alpha * (1.0f - k), HDRP_ALPHA_MIN);
+    return a;
+}
+
+/** GGX widths in the parametrisation of Disney: an aspect ratio of at most 10 to 1.
+ *  perceptual_roughness  [0,1]   of the geometric mean width
+ *  anisotropy            [-1,1]  > 0 stretches the highlight along the tangent
+ *  returns               [HDRP_ALPHA_MIN,3.163]
+ *  edges                 negative values swap the axes; the source defines none
+ *  error                 <= 4e-7 relative  @accuracy brdf_alphas_disney
+ *  source                Burley 2012, "Physically-Based Shading at Disney", section 5.4 */
+HDRP_FN hdrp_brdf_alphas hdrp_brdf_alphas_disney(float perceptual_roughness, float anisotropy)
+{
+    hdrp_brdf_alphas a;
+    float alpha = hdrp_brdf_alpha_from_perceptual_roughness(perceptual_roughness);
+    float k = hdrp_clamp(anisotropy, -1.0f, 1.0f);
+    float aspect = hdrp_sqrt(1.0f - 0.9f * hdrp_abs(k));
+    float wide = alpha / aspect;
+    float narrow = hdrp_max(alpha * aspect, HDRP_ALPHA_MIN);
+    a.t = k < 0.0f ? narrow : wide;
+    a.b = k < 0.0f ? wide : narrow;
+    return a;
+}
+
+/* The Kulla parameters of a pair of widths. */
+struct hdrp_brdf_kulla {
+    float perceptual_roughness; /* [0,1] */
+    float anisotropy;           /* [-1,1] */
+};
+HDRP_TYPEDEF(hdrp_brdf_kulla)
+
+/** Kulla parameters that give two widths: the way in from other parametrisations.
+ *  alphas   valid  e.g. glTF's KHR_materials_anisotropy: t = lerp(alpha, 1, strength^2), b = alpha
+ *  returns  valid  hdrp_brdf_alphas_kulla of it is alphas, where their mean is at most 1
+ *  edges    a mean above 1 is limited, which keeps the ratio of the widths
+ *  error    <= 4e-7 relative, in the widths  @accuracy brdf_kulla_from_alphas
+ *  source   Kulla and Conty 2017, "Revisiting Physically Based Shading at Imageworks" (inverted) */
+HDRP_FN hdrp_brdf_kulla hdrp_brdf_kulla_from_alphas(hdrp_brdf_alphas alphas)
+{
+    hdrp_brdf_kulla k;
+    float t = hdrp_max(alphas.t, HDRP_ALPHA_MIN);
+    float b = hdrp_max(alphas.b, HDRP_ALPHA_MIN);
+    k.perceptual_roughness = hdrp_sqrt(hdrp_min(0.5f * (t + b), 1.0f));
+    k.anisotropy = hdrp_clamp((t - b) / (t + b), -1.0f, 1.0f);
+    return k;
+}
+
+/* What to ask an isotropically prefiltered environment for, in place of a stretched lobe. */
+struct hdrp_brdf_env_lobe {
+    hdrp_v3 normal;             /* unit; reflect the view direction about it */
+    float perceptual_roughness; /* [0,1] of the prefiltered level */
+};
+HDRP_TYPEDEF(hdrp_brdf_env_lobe)
+
+/** Bent normal and roughness that make an isotropic environment look stretched.
+ *  t                     unit    tangent, orthogonal to n
+ *  b                     unit    bitangent, orthogonal to n and t
+ *  n                     unit    shading normal
+ *  v                     unit    towards the viewer
+ *  anisotropy            [-1,1]  > 0 stretches along the tangent
+ *  perceptual_roughness  [0,1]
+ *  returns               valid
+ *  edges                 n unchanged where anisotropy is 0 or where v runs along the grain
+ *  error                 none: an empirical effect without a reference in the source
+ *  source                Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's
+ *                        High Definition Render Pipeline", slides on anisotropy; McAuley 2015,
+ *                        "Rendering the World of Far Cry 4"
+ *  note                  the grain switches at anisotropy 0, not at the 0.8 of the slide, and the
+ *                        bent normal is normalised before the blend, without which the amount of
+ *                        bending depends on the view */
+HDRP_FN hdrp_brdf_env_lobe hdrp_brdf_env_lobe_aniso(hdrp_v3 t, hdrp_v3 b, hdrp_v3 n, hdrp_v3 v,
+                                                    float anisotropy, float perceptual_roughness)
+{
+    hdrp_brdf_env_lobe e;
+    float pr = hdrp_saturate(perceptual_roughness);
+    float k = hdrp_abs(anisotropy);
+    hdrp_v3 grain = hdrp_v3_make(anisotropy < 0.0f ? t.x : b.x, anisotropy < 0.0f ? t.y : b.y,
+                                 anisotropy < 0.0f ? t.z : b.z);
+    /* v without its part along the grain: the normal of a cylinder whose axis is the grain. */
+    hdrp_v3 across = hdrp_normalize_or(hdrp_v3_mad(v, grain, -hdrp_v3_dot(v, grain)), n);
+    float stretch = k * hdrp_saturate(1.5f * hdrp_sqrt(pr));
+    e.normal = hdrp_normalize_or(hdrp_v3_lerp(n, across, stretch), n);
+    e.perceptual_roughness = pr * hdrp_saturate(1.2f - k);
+    return e;
+}
+
+/* >>directional albedo
+ * How much of the light from one direction the specular lobe sends back: FGD. From a table
+ * (hdrp_brdf_fgd_bake_rows, baked once, 64 x 64 is enough) or from the analytic fit. */
+
+/* The two integrals over the hemisphere of D V cos for unit Fresnel term and for Schlick's weight.
+ * Specular albedo is linear in them, see hdrp_brdf_specular_albedo. */
+struct hdrp_brdf_fgd {
+    float albedo;  /* [0,1] single-scattering albedo for F = 1 */
+    float schlick; /* [0,1] the same, each direction weighted by hdrp_brdf_schlick_weight */
+};
+HDRP_TYPEDEF(hdrp_brdf_fgd)
+
+/** Position in an FGD table of a view and a roughness, as a texture coordinate.
+ *  n_dot_v               [0,1]     cosine between unit normal and direction to the viewer
+ *  perceptual_roughness  [0,1]
+ *  size                  [2,4096]  width and height of the table in texels
+ *  returns               [0,1]     for a clamped bilinear lookup
+ *  edges                 inputs are limited; the ends map to the centres of the outer texels
+ *  error                 none: definition; the square root gives grazing views more texels
+ *  source                half-texel remapping as any table that includes its end points needs */
+HDRP_FN hdrp_v2 hdrp_brdf_fgd_uv(float n_dot_v, float perceptual_roughness, float size)
+{
+    float scale = (size - 1.0f) / size;
+    float offset = 0.5f / size;
+    return hdrp_v2_make(hdrp_sqrt(hdrp_saturate(n_dot_v)) * scale + offset,
+                        hdrp_saturate(perceptual_roughness) * scale + offset);
+}
+
+/* The analytic fit of FGD at one roughness: rational functions of u = sqrt(n_dot_v). Made once per
+ * pixel, it costs each light a few multiply-adds. Also the averages over the hemisphere. */
+struct hdrp_brdf_fgd_fit {
+    hdrp_v2 ratio_n;    /* schlick / albedo = (1 - n_dot_v) (x + y u) / */
+    hdrp_v3 ratio_d;    /* (x + y u + z u^2) */
+    hdrp_v3 loss_n;     /* 1 - albedo = u (x + y u + z u^2) / */
+    hdrp_v3 loss_d;     /* (x + y u + z u^2) */
+    float mean_ratio;   /* cosine-weighted mean of schlick / albedo */
+    float mean_albedo;  /* of albedo */
+    float mean_schlick; /* of schlick */
+};
+HDRP_TYPEDEF(hdrp_brdf_fgd_fit)
+
+/** a + b x + c x^2. */
+HDRP_FN float hdrp_i_brdf_quadratic(float a, float b, float c, float x)
+{
+    return a + x * (b + x * c);
+}
+
+/** a + b x + c x^2 + d x^3. */
+HDRP_FN float hdrp_i_brdf_cubic(float a, float b, float c, float d, float x)
+{
+    return a + x * (b + x * (c + x * d));
+}
+
+/** The analytic fit of FGD at one roughness.
+ *  perceptual_roughness  [0,1]
+ *  returns               valid
+ *  edges                 total; below HDRP_PERCEPTUAL_ROUGHNESS_MIN as at it
+ *  error                 none: see hdrp_brdf_fgd_fast, whose coefficients these are
+ *  source                our own minimax fit to the quadrature of hdrp_brdf_fgd_integrate, by
+ *                        tools/fit_brdf.py. It errs towards too much albedo, so that the diffuse
+ *                        lobe that hdrp_brdf_diffuse couples to it never gains energy */
+HDRP_FN hdrp_brdf_fgd_fit hdrp_brdf_fgd_fit_make(float perceptual_roughness)
+{
+    hdrp_brdf_fgd_fit f;
+    float p = hdrp_clamp(perceptual_roughness, HDRP_PERCEPTUAL_ROUGHNESS_MIN, 1.0f);
+    f.ratio_n.x = hdrp_i_brdf_quadratic(0.022186442f, -0.012941279f, 0.001765296f, p);
+    f.ratio_n.y = hdrp_i_brdf_quadratic(-0.026079349f, 0.015244461f, -0.000861881f, p);
+    f.ratio_d.x = hdrp_i_brdf_quadratic(0.021698971f, 0.009699956f, 0.219789658f, p);
+    f.ratio_d.y = hdrp_i_brdf_quadratic(-0.025212614f, -0.216681991f, 0.068790934f, p);
+    f.ratio_d.z = hdrp_i_brdf_quadratic(0.078174201f, 0.209416209f, -0.358690205f, p);
+    f.loss_n.x = p * hdrp_i_brdf_quadratic(2.112435745f, 10.96807691f, -9.506917805f, p);
+    f.loss_n.y = p * hdrp_i_brdf_quadratic(-9.262945371f, 6.993023548f, 55.75933410f, p);
+    f.loss_n.z = p * hdrp_i_brdf_quadratic(15.54278552f, -76.88269919f, 60.24908989f, p);
+    f.loss_d.x = hdrp_i_brdf_cubic(0.006075940691f, -1.427138497f, 117.1475739f, -101.2427910f, p);
+    f.loss_d.y = hdrp_i_brdf_cubic(1.234632904f, -187.4502387f, 234.6801844f, -24.08461633f, p);
+    f.loss_d.z = hdrp_i_brdf_cubic(83.94792510f, -40.64339960f, -60.47121817f, 58.41367382f, p);
+    f.mean_ratio = hdrp_i_brdf_cubic(0.049198298f, 0.069418406f, -0.582826916f,
+                                     0.970094512f + p * (-0.653637948f + p * 0.156278598f), p);
+    f.mean_albedo = hdrp_i_brdf_cubic(1.002299831f, -0.23905131f, 2.189078807f,
+                                      -7.39390892f + p * (7.227564278f - p * 2.378190096f), p);
+    f.mean_schlick = hdrp_i_brdf_cubic(0.049184384f, 0.070219816f, -0.648656877f,
+                                       1.135811483f + p * (-0.807149401f + p * 0.204814418f), p);
+    return f;
+}
+
+/* FGD in the form of the fit. */
+struct hdrp_i_brdf_split {
+    float ratio; /* [0,1] schlick / albedo */
+    float loss;  /* [0,1] 1 - albedo */
+};
+HDRP_TYPEDEF(hdrp_i_brdf_split)
+
+HDRP_FN hdrp_i_brdf_split hdrp_i_brdf_split_from_fit(hdrp_brdf_fgd_fit fit, float n_dot_x)
+{
+    hdrp_i_brdf_split s;
+    float c = hdrp_saturate(n_dot_x);
+    float u = hdrp_sqrt(c);
+    s.ratio = hdrp_saturate((1.0f - c) * (fit.ratio_n.x + fit.ratio_n.y * u) /
+                            hdrp_i_brdf_quadratic(fit.ratio_d.x, fit.ratio_d.y, fit.ratio_d.z, u));
+    s.loss = hdrp_saturate(u * hdrp_i_brdf_quadratic(fit.loss_n.x, fit.loss_n.y, fit.loss_n.z, u) /
+                           hdrp_i_brdf_quadratic(fit.loss_d.x, fit.loss_d.y, fit.loss_d.z, u));
+    return s;
+}
+
+/** FGD of one direction from the fit of its roughness.
+ *  fit      valid  made by hdrp_brdf_fgd_fit_make
+ *  n_dot_x  [0,1]  cosine between unit normal and direction
+ *  returns  [0,1]
+ *  edges    exactly albedo 1 at grazing and schlick 0 at normal incidence
+ *  error    none: see hdrp_brdf_fgd_fast
+ *  source   as hdrp_brdf_fgd_fit_make */
+HDRP_FN hdrp_brdf_fgd hdrp_brdf_fgd_from_fit(hdrp_brdf_fgd_fit fit, float n_dot_x)
+{
+    hdrp_brdf_fgd f;
+    hdrp_i_brdf_split s = hdrp_i_brdf_split_from_fit(fit, n_dot_x);
+    f.albedo = 1.0f - s.loss;
+    f.schlick = s.ratio * f.albedo;
+    return f;
+}
+
+/** FGD without a table.
+ *  n_dot_v               [0,1]  cosine between unit normal and direction to the viewer
+ *  perceptual_roughness  [0,1]
+ *  returns               [0,1]
+ *  edges                 total
+ *  error                 <= 0.025 absolute, from n_dot_v of 0.02 and twice alpha upwards
+ *                        @accuracy brdf_fgd_fast
+ *  source                as hdrp_brdf_fgd_fit_make
+ *  note                  closer to grazing than alpha the albedo of a smooth surface dips to 0.88;
+ *                        the fit ignores that dip */
+HDRP_FN hdrp_brdf_fgd hdrp_brdf_fgd_fast(float n_dot_v, float perceptual_roughness)
+{
+    return hdrp_brdf_fgd_from_fit(hdrp_brdf_fgd_fit_make(perceptual_roughness), n_dot_v);
+}
+
+/** Factor that gives a GGX lobe back the light that bounces more than once between microfacets.
+ *  fgd       valid  at the view and the roughness of the lobe
+ *  fresnel0  [0,1]  per component
+ *  returns   [1,inf) per component
+ *  edges     1 for a black fresnel0; a white furnace stays white for fresnel0 = 1
+ *  error     none: against a random walk between microfacets (Heitz et al. 2016) coloured metals
+ *            come out up to 0.05 too bright at perceptual roughness 1, smooth ones exactly
+ *  source    Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
+ *            Definition Render Pipeline", slides on multiscattering GGX (credit: Turquin) */
+HDRP_FN hdrp_v3 hdrp_brdf_energy_compensation(hdrp_brdf_fgd fgd, hdrp_v3 fresnel0)
+{
+    /* GGX keeps 0.307 of the light at worst; a table may hold anything. */
+    float missing = 1.0f / hdrp_max(fgd.albedo, 0.05f) - 1.0f;
+    return hdrp_v3_make(1.0f + fresnel0.x * missing, 1.0f + fresnel0.y * missing,
+                        1.0f + fresnel0.z * missing);
+}
+
+/** Albedo of the single-scattering specular lobe: what it reflects of a white environment.
+ *  fgd        valid  at the view and the roughness of the lobe
+ *  fresnel0   [0,1]  per component
+ *  fresnel90  [0,1]  see hdrp_brdf_fresnel90
+ *  returns    [0,1]  per component
+ *  edges      fgd.albedo for fresnel0 = 1
+ *  error      none: definition
+ *  source     Karis 2013, "Real Shading in Unreal Engine 4", section "Image-Based Lighting" */
+HDRP_FN hdrp_v3 hdrp_brdf_specular_albedo(hdrp_brdf_fgd fgd, hdrp_v3 fresnel0, float fresnel90)
+{
+    float scale = fgd.albedo - fgd.schlick;
+    float bias = fresnel90 * fgd.schlick;
+    return hdrp_v3_saturate(hdrp_v3_make(fresnel0.x * scale + bias, fresnel0.y * scale + bias,
+                                         fresnel0.z * scale + bias));
+}
+
+/* >>diffuse */
+
+/** Burley's diffuse lobe as published. Empirical: it reflects more light than it receives.
+ *  n_dot_v               [0,1]   cosine between unit normal and direction to the viewer
+ *  n_dot_l               [0,1]   cosine between unit normal and direction to the light
+ *  l_dot_v               [-1,1]  cosine between both directions
+ *  perceptual_roughness  [0,1]
+ *  returns               [0,2]   1/sr, for a white surface
+ *  edges                 albedo 1.04 at normal incidence, 1.56 at grazing (roughness 1)
+ *  error                 <= 8e-7 relative  @accuracy brdf_diffuse_disney
+ *  source                Burley 2012, "Physically-Based Shading at Disney", section 5.3
+ *  note                  2 cos^2 of the half angle is 1 + l_dot_v */
+HDRP_FN float hdrp_brdf_diffuse_disney(float n_dot_v, float n_dot_l, float l_dot_v,
+                                       float perceptual_roughness)
+{
+    float fd90 = 0.5f + perceptual_roughness * hdrp_max(1.0f + l_dot_v, 0.0f);
+    float fl = hdrp_brdf_f_schlick(1.0f, fd90, n_dot_l);
+    float fv = hdrp_brdf_f_schlick(1.0f, fd90, n_dot_v);
+    return HDRP_INV_PI * fl * fv;
+}
+
+/** Burley's diffuse lobe, rescaled with roughness so that it gains less.
+ *  n_dot_v               [0,1]   cosine between unit normal and direction to the viewer
+ *  n_dot_l               [0,1]   cosine between unit normal and direction to the light
+ *  l_dot_v               [-1,1]  cosine between both directions
+ *  perceptual_roughness  [0,1]
+ *  returns               [0,2]   1/sr, for a white surface
+ *  edges                 albedo up to 1.0 at normal incidence, still 1.1 at grazing
+ *  error                 <= 1e-6 relative  @accuracy brdf_diffuse_disney_normalized
+ *  source                Lagarde and de Rousiers 2014, "Moving Frostbite to Physically Based
+ *                        Rendering", listing 1 */
+HDRP_FN float hdrp_brdf_diffuse_disney_normalized(float n_dot_v, float n_dot_l, float l_dot_v,
+                                                  float perceptual_roughness)
+{
+    float bias = 0.5f * perceptual_roughness;
+    float factor = hdrp_lerp(1.0f, 1.0f / 1.51f, perceptual_roughness);
+    float fd90 = bias + perceptual_roughness * hdrp_max(1.0f + l_dot_v, 0.0f);
+    float fl = hdrp_brdf_f_schlick(1.0f, fd90, n_dot_l);
+    float fv = hdrp_brdf_f_schlick(1.0f, fd90, n_dot_v);
+    return HDRP_INV_PI * factor * fl * fv;
+}
+
+HDRP_FN float hdrp_i_brdf_diffuse_share(hdrp_i_brdf_split s, float f0, float f90)
+{
+    float kept = 1.0f - f90 * s.ratio;
+    return kept + s.loss * (1.0f - (1.0f - f0) * kept);
+}
+
+/** Light that a specular lobe leaves to the diffuse one in one direction, over 1 - F0.
+ *  fit        valid  made by hdrp_brdf_fgd_fit_make at the roughness of the specular lobe
+ *  n_dot_x    [0,1]  cosine between unit normal and direction
+ *  fresnel0   [0,1]  of the specular lobe, per component
+ *  fresnel90  [0,1]  see hdrp_brdf_fresnel90
+ *  returns    [0,2]  per component
+ *  edges      finite for fresnel0 = 1, where the light and 1 - F0 both vanish
+ *  error      none: see hdrp_brdf_diffuse
+ *  source     Kelemen and Szirmay-Kalos 2001, "A Microfacet Based Coupled Specular-Matte BRDF Model
+ *             with Importance Sampling", eq. 5
+ *  note       the multiscattered albedo is E = (F0 + (1 - F0) f90 ratio) (1 - (1 - F0) loss), with
+ *             the ratio and the loss of the fit; this is (1 - E) / (1 - F0), factor by factor */
+HDRP_FN hdrp_v3 hdrp_brdf_diffuse_share(hdrp_brdf_fgd_fit fit, float n_dot_x, hdrp_v3 fresnel0,
+                                        float fresnel90)
+{
+    hdrp_i_brdf_split s = hdrp_i_brdf_split_from_fit(fit, n_dot_x);
+    return hdrp_v3_make(hdrp_i_brdf_diffuse_share(s, fresnel0.x, fresnel90),
+                        hdrp_i_brdf_diffuse_share(s, fresnel0.y, fresnel90),
+                        hdrp_i_brdf_diffuse_share(s, fresnel0.z, fresnel90));
+}
+
+HDRP_FN float hdrp_i_brdf_diffuse_share_mean(hdrp_brdf_fgd_fit fit, float f0, float f90)
+{
+    float kept = 1.0f - f90 * fit.mean_ratio;
+    float both = kept - fit.mean_albedo + f90 * fit.mean_schlick;
+    return kept + (1.0f - fit.mean_albedo) - (1.0f - f0) * both;
+}
+
+/** Cosine-weighted mean of hdrp_brdf_diffuse_share over the hemisphere.
+ *  fit        valid    made by hdrp_brdf_fgd_fit_make at the roughness of the specular lobe
+ *  fresnel0   [0,1]    of the specular lobe, per component
+ *  fresnel90  [0,1]    see hdrp_brdf_fresnel90
+ *  returns    [0.5,2]  per component
+ *  edges      1 where both reflectances are 0 and the surface is smooth
+ *  error      <= 0.003 relative  @accuracy brdf_diffuse_share_mean
+ *  source     as hdrp_brdf_diffuse_share */
+HDRP_FN hdrp_v3 hdrp_brdf_diffuse_share_mean(hdrp_brdf_fgd_fit fit, hdrp_v3 fresnel0,
+                                             float fresnel90)
+{
+    return hdrp_v3_make(hdrp_i_brdf_diffuse_share_mean(fit, fresnel0.x, fresnel90),
+                        hdrp_i_brdf_diffuse_share_mean(fit, fresnel0.y, fresnel90),
+                        hdrp_i_brdf_diffuse_share_mean(fit, fresnel0.z, fresnel90));
+}
+
+/** Diffuse lobe of a surface whose specular lobe reflects first: the recommended one.
+ *  What either direction loses to the specular lobe is missing from the diffuse one, so that both
+ *  together never reflect more than they receive, and the lobe is reciprocal.
+ *  fit        valid  made by hdrp_brdf_fgd_fit_make at the roughness of the specular lobe
+ *  n_dot_v    [0,1]  cosine between unit normal and direction to the viewer
+ *  n_dot_l    [0,1]  cosine between unit normal and direction to the light
+ *  fresnel0   [0,1]  of the specular lobe, per component
+ *  fresnel90  [0,1]  see hdrp_brdf_fresnel90
+ *  returns    [0,1]  1/sr, for a white diffuse albedo, per component
+ *  edges      1/pi for a smooth surface without specular, 0 for fresnel0 = 1
+ *  error      <= 0.005 absolute, of the sum of both albedos above 1  @accuracy brdf_diffuse_gain
+ *  error      <= 0.03 absolute, of the sum of both albedos below 1, from n_dot_v of 0.15 upwards
+ *             @accuracy brdf_diffuse_loss
+ *  source     Kelemen and Szirmay-Kalos 2001, "A Microfacet Based Coupled Specular-Matte BRDF Model
+ *             with Importance Sampling", eq. 5, with the multiscattered GGX albedo */
+HDRP_FN hdrp_v3 hdrp_brdf_diffuse(hdrp_brdf_fgd_fit fit, float n_dot_v, float n_dot_l,
+                                  hdrp_v3 fresnel0, float fresnel90)
+{
+    hdrp_v3 v = hdrp_brdf_diffuse_share(fit, n_dot_v, fresnel0, fresnel90);
+    hdrp_v3 l = hdrp_brdf_diffuse_share(fit, n_dot_l, fresnel0, fresnel90);
+    hdrp_v3 mean = hdrp_brdf_diffuse_share_mean(fit, fresnel0, fresnel90);
+    return hdrp_v3_make(HDRP_INV_PI * (1.0f - fresnel0.x) * v.x * l.x / mean.x,
+                        HDRP_INV_PI * (1.0f - fresnel0.y) * v.y * l.y / mean.y,
+                        HDRP_INV_PI * (1.0f - fresnel0.z) * v.z * l.z / mean.z);
+}
+
+/* >>thin film
+ * A film between the medium above and the base, which is described by its F0. For each polarisation
+ * the reflectance is a series in the order m of the path difference; the spectrum enters only
+ * through the cosine transform of the colour-matching functions, here sums of Gaussians. */
+
+/** Response of linear Rec.709 to a spectrum cos(2 pi opd / wavelength), three Gaussians.
+ *  Equal-energy white gives (1,1,1), and so does opd_um = 0. The colour-matching functions are
+ *  those of CIE 1931, fitted in wavenumber by tools/fit_brdf.py: 0.12 of worst error, 0.03 rms. */
+HDRP_FN hdrp_v3 hdrp_i_brdf_film_spectrum(float opd_um)
+{
+    float o2 = opd_um * opd_um;
+    float a = hdrp_exp(-0.157538609f * o2) * hdrp_cos(10.4604763f * opd_um);
+    float b = hdrp_exp(-0.368638439f * o2) * hdrp_cos(11.3425640f * opd_um);
+    float c = hdrp_exp(-0.252454787f * o2) * hdrp_cos(13.9199948f * opd_um);
+    return hdrp_v3_make(1.892718684f * a - 0.923437728f * b + 0.030719044f * c,
+                        -0.554620936f * a + 1.691940274f * b - 0.137319338f * c,
+                        0.008705372f * a - 0.175575885f * b + 1.166870513f * c);
+}
+
+/** The same with six Gaussians: 0.008 of worst error. */
+HDRP_FN hdrp_v3 hdrp_i_brdf_film_spectrum_exact(float opd_um)
+{
+    float o2 = opd_um * opd_um;
+    float a = hdrp_exp(-0.107836167f * o2) * hdrp_cos(10.3351997f * opd_um);
+    float b = hdrp_exp(-0.211576733f * o2) * hdrp_cos(11.0886415f * opd_um);
+    float c = hdrp_exp(-0.153762793f * o2) * hdrp_cos(13.1971941f * opd_um);
+    float d = hdrp_exp(-0.124425748f * o2) * hdrp_cos(11.9445793f * opd_um);
+    float e = hdrp_exp(-0.0475187908f * o2) * hdrp_cos(13.5356095f * opd_um);
+    float f = hdrp_exp(-0.129010028f * o2) * hdrp_cos(14.2566602f * opd_um);
+    float red = 1.271409553f * a + 0.157203887f * b - 0.116461528f * c - 0.422732810f * d;
+    float green = -0.333994405f * a + 0.920465035f * b + 0.091096306f * c + 0.455054326f * d;
+    float blue = 0.012027847f * a - 0.126491949f * b + 0.289531482f * c - 0.034983328f * d;
+    return hdrp_v3_make(red + 0.028005091f * e + 0.082575807f * f,
+                        green - 0.037034974f * e - 0.095586288f * f,
+                        blue + 0.158725085f * e + 0.701190863f * f);
+}
+
+/* One interface for one polarisation: amplitude and transmitted share. */
+struct hdrp_i_brdf_amplitude {
+    float r; /* [-1,1] amplitude of the reflection */
+    float t; /* [0,1] 1 - r^2, without cancellation */
+};
+HDRP_TYPEDEF(hdrp_i_brdf_amplitude)
+
+/** The interface at which x turns into y: n cos for s polarisation, cos / n for p. */
+HDRP_FN hdrp_i_brdf_amplitude hdrp_i_brdf_amplitude_make(float x, float y)
+{
+    hdrp_i_brdf_amplitude a;
+    float d = hdrp_max(x + y, HDRP_FLT_MIN);
+    a.r = (x - y) / d;
+    a.t = hdrp_saturate(4.0f * (x / d) * (y / d));
+    return a;
+}
+
+/* A film over a base of one F0, for one polarisation. */
+struct hdrp_i_brdf_cavity {
+    float q; /* [-1,1] product of both amplitudes */
+    float t; /* [0,1] light that enters the base when all orders add without interference */
+};
+HDRP_TYPEDEF(hdrp_i_brdf_cavity)
+
+HDRP_FN hdrp_i_brdf_cavity hdrp_i_brdf_cavity_make(hdrp_i_brdf_amplitude top,
+                                                   hdrp_i_brdf_amplitude bottom)
+{
+    hdrp_i_brdf_cavity c;
+    float product = top.t * bottom.t;
+    c.q = top.r * bottom.r;
+    c.t = product / hdrp_max(top.t + bottom.t - product, HDRP_FLT_MIN); /* 1 - q^2 below */
+    return c;
+}
+
+/** Light that enters the base of one polarisation, second order. The tail of the series is closed
+ *  as if it had the spectrum of its first term, which makes a vanishing film exact. */
+HDRP_FN float hdrp_i_brdf_cavity_second_order(hdrp_i_brdf_cavity c, float s1, float s2)
+{
+    float tail = c.q * c.q * s2 / hdrp_max(1.0f + c.q, 1e-6f);
+    return c.t * (1.0f + 2.0f * (tail - c.q * s1));
+}
+
+/* A film whose light path is known: what all colour channels share. */
+struct hdrp_i_brdf_film {
+    hdrp_i_brdf_amplitude s; /* top interface, s polarisation */
+    hdrp_i_brdf_amplitude p; /* top interface, p polarisation */
+    float cos_film;          /* [0,1] of the angle in the film */
+    float ior;               /* [1,3] */
+    float opd_um;            /* optical path difference of neighbouring orders */
+};
+HDRP_TYPEDEF(hdrp_i_brdf_film)
+
+HDRP_FN hdrp_i_brdf_film hdrp_i_brdf_film_make(float cos_theta, float outer_ior, float film_ior,
+                                               float thickness_nm)
+{
+    hdrp_i_brdf_film f;
+    float c = hdrp_saturate(cos_theta);
+    f.ior = film_ior;
+    f.cos_film = hdrp_brdf_refracted_cosine(c, film_ior / outer_ior);
+    f.s = hdrp_i_brdf_amplitude_make(outer_ior * c, film_ior * f.cos_film);
+    f.p = hdrp_i_brdf_amplitude_make(film_ior * c, outer_ior * f.cos_film);
+    f.opd_um = 2e-3f * film_ior * thickness_nm * f.cos_film;
+    return f;
+}
+
+HDRP_FN hdrp_i_brdf_cavity hdrp_i_brdf_film_cavity_s(hdrp_i_brdf_film f, float base_ior)
+{
+    float cos_base = hdrp_brdf_refracted_cosine(f.cos_film, base_ior / f.ior);
+    return hdrp_i_brdf_cavity_make(
+        f.s, hdrp_i_brdf_amplitude_make(f.ior * f.cos_film, base_ior * cos_base));
+}
+
+HDRP_FN hdrp_i_brdf_cavity hdrp_i_brdf_film_cavity_p(hdrp_i_brdf_film f, float base_ior)
+{
+    float cos_base = hdrp_brdf_refracted_cosine(f.cos_film, base_ior / f.ior);
+    return hdrp_i_brdf_cavity_make(
+        f.p, hdrp_i_brdf_amplitude_make(base_ior * f.cos_film, f.ior * cos_base));
+}
+
+HDRP_FN float hdrp_i_brdf_film_channel(hdrp_i_brdf_film f, float fresnel0, float s1, float s2)
+{
+    float base_ior = hdrp_brdf_ior_from_fresnel0(fresnel0);
+    float s = hdrp_i_brdf_cavity_second_order(hdrp_i_brdf_film_cavity_s(f, base_ior), s1, s2);
+    float p = hdrp_i_brdf_cavity_second_order(hdrp_i_brdf_film_cavity_p(f, base_ior), s1, s2);
+    return hdrp_saturate(1.0f - 0.5f * (s + p));
+}
+
+/** Reflectance of a thin film over a base, to second order: the recommended form.
+ *  cos_theta     [0,1]     cosine of the angle above the film
+ *  outer_ior     [1,1.5]   IOR of the medium above: 1 for air, 1.5 for a clear coat
+ *  film_ior      [1,3]
+ *  thickness_nm  [0,3000]
+ *  fresnel0      [0,1]     of the base against air, per channel; taken as a dielectric of that F0
+ *  returns       [0,1]     linear Rec.709, colours out of gamut are limited
+ *  edges         no thickness gives the bare base exactly; 1 at grazing and for fresnel0 = 1
+ *  error         <= 0.45 absolute, at grazing over a metal  @accuracy brdf_film
+ *  error         <= 0.008 absolute, mean over the domain  @accuracy brdf_film_mean
+ *  source        Belcour and Barla 2017, "A Practical Extension to Microfacet Theory for the
+ *                Modeling of Varying Iridescence", section 4, per polarisation and with our own
+ *                spectral fit
+ *  note          as many exponentials and cosines as hdrp_brdf_film_fast, more square roots */
+HDRP_FN hdrp_v3 hdrp_brdf_film(float cos_theta, float outer_ior, float film_ior, float thickness_nm,
+                               hdrp_v3 fresnel0)
+{
+    hdrp_i_brdf_film f = hdrp_i_brdf_film_make(cos_theta, outer_ior, film_ior, thickness_nm);
+    hdrp_v3 s1 = hdrp_i_brdf_film_spectrum(f.opd_um);
+    hdrp_v3 s2 = hdrp_i_brdf_film_spectrum(2.0f * f.opd_um);
+    return hdrp_v3_make(hdrp_i_brdf_film_channel(f, fresnel0.x, s1.x, s2.x),
+                        hdrp_i_brdf_film_channel(f, fresnel0.y, s1.y, s2.y),
+                        hdrp_i_brdf_film_channel(f, fresnel0.z, s1.z, s2.z));
+}
+
+/* Orders after which the series of the exact form is closed. */
+#define HDRP_BRDF_FILM_ORDERS 16
+
+/* A sum over the orders of both polarisations, in one channel each. */
+struct hdrp_i_brdf_series {
+    hdrp_i_brdf_cavity s;
+    hdrp_i_brdf_cavity p;
+    float power_s; /* (-q)^m */
+    float power_p;
+    float sum_s;
+    float sum_p;
+};
+HDRP_TYPEDEF(hdrp_i_brdf_series)
+
+HDRP_FN hdrp_i_brdf_series hdrp_i_brdf_series_make(hdrp_i_brdf_film f, float fresnel0)
+{
+    hdrp_i_brdf_series r;
+    float base_ior = hdrp_brdf_ior_from_fresnel0(fresnel0);
+    r.s = hdrp_i_brdf_film_cavity_s(f, base_ior);
+    r.p = hdrp_i_brdf_film_cavity_p(f, base_ior);
+    r.power_s = -r.s.q;
+    r.power_p = -r.p.q;
+    r.sum_s = 0.0f;
+    r.sum_p = 0.0f;
+    return r;
+}
+
+HDRP_FN hdrp_i_brdf_series hdrp_i_brdf_series_add(hdrp_i_brdf_series r, float spectrum)
+{
+    r.sum_s += r.power_s * spectrum;
+    r.sum_p += r.power_p * spectrum;
+    r.power_s *= -r.s.q;
+    r.power_p *= -r.p.q;
+    return r;
+}
+
+/* The last order stands for all that follow it. */
+HDRP_FN float hdrp_i_brdf_series_close(hdrp_i_brdf_series r, float spectrum)
+{
+    float tail_s = r.power_s * spectrum / hdrp_max(1.0f + r.s.q, 1e-6f);
+    float tail_p = r.power_p * spectrum / hdrp_max(1.0f + r.p.q, 1e-6f);
+    float s = r.s.t * (1.0f + 2.0f * (r.sum_s + tail_s));
+    float p = r.p.t * (1.0f + 2.0f * (r.sum_p + tail_p));
+    return hdrp_saturate(1.0f - 0.5f * (s + p));
+}
+
+/** Reflectance of a thin film over a base, to order 16 and with a finer spectrum: for references.
+ *  cos_theta     [0,1]     cosine of the angle above the film
+ *  outer_ior     [1,1.5]   IOR of the medium above
+ *  film_ior      [1,3]
+ *  thickness_nm  [0,3000]
+ *  fresnel0      [0,1]     of the base against air, per channel; taken as a dielectric of that F0
+ *  returns       [0,1]     linear Rec.709, colours out of gamut are limited
+ *  edges         as hdrp_brdf_film
+ *  error         <= 0.2 absolute, at grazing over a metal  @accuracy brdf_film_exact
+ *  error         <= 0.0006 absolute, mean over the domain  @accuracy brdf_film_exact_mean
+ *  source        Born and Wolf 1999, "Principles of Optics", section 1.6.4, integrated over the
+ *                colour-matching functions term by term
+ *  note          what is left is the resonance of a cavity between two mirrors at grazing, whose
+ *                lines are narrower than any sum of Gaussians. hdrp_brdf_film_airy has them */
+HDRP_FN hdrp_v3 hdrp_brdf_film_exact(float cos_theta, float outer_ior, float film_ior,
+                                     float thickness_nm, hdrp_v3 fresnel0)
+{
+    hdrp_i_brdf_film f = hdrp_i_brdf_film_make(cos_theta, outer_ior, film_ior, thickness_nm);
+    hdrp_i_brdf_series red = hdrp_i_brdf_series_make(f, fresnel0.x);
+    hdrp_i_brdf_series green = hdrp_i_brdf_series_make(f, fresnel0.y);
+    hdrp_i_brdf_series blue = hdrp_i_brdf_series_make(f, fresnel0.z);
+    hdrp_v3 s;
+    float opd_um = f.opd_um;
+    int m;
+    for (m = 1; m < HDRP_BRDF_FILM_ORDERS; ++m) {
+        s = hdrp_i_brdf_film_spectrum_exact(opd_um);
+        opd_um += f.opd_um;
+        red = hdrp_i_brdf_series_add(red, s.x);
+        green = hdrp_i_brdf_series_add(green, s.y);
+        blue = hdrp_i_brdf_series_add(blue, s.z);
+    }
+    s = hdrp_i_brdf_film_spectrum_exact(opd_um);
+    return hdrp_v3_make(hdrp_i_brdf_series_close(red, s.x), hdrp_i_brdf_series_close(green, s.y),
+                        hdrp_i_brdf_series_close(blue, s.z));
+}
+
+/** Airy reflectance of a thin film at one wavelength, unpolarised.
+ *  cos_theta      [0,1]       cosine of the angle above the film
+ *  outer_ior      [1,1.5]     IOR of the medium above
+ *  film_ior       [1,3]       at this wavelength
+ *  base_ior       [1,4e7]     at this wavelength
+ *  thickness_nm   [0,3000]
+ *  wavelength_nm  [300,1000]
+ *  returns        [0,1]
+ *  edges          1 at grazing
+ *  error          <= 2e-3 absolute  @accuracy brdf_film_airy
+ *  source         Born and Wolf 1999, "Principles of Optics", section 1.6.4, eq. 58
+ *  note           1 + 2 q cos(phase) + q^2 as (1 + q)^2 - 4 q sin^2(phase / 2) */
+HDRP_FN float hdrp_brdf_film_airy(float cos_theta, float outer_ior, float film_ior, float base_ior,
+                                  float thickness_nm, float wavelength_nm)
+{
+    hdrp_i_brdf_film f = hdrp_i_brdf_film_make(cos_theta, outer_ior, film_ior, thickness_nm);
+    float cos_base = hdrp_brdf_refracted_cosine(f.cos_film, base_ior / film_ior);
+    hdrp_i_brdf_amplitude s =
+        hdrp_i_brdf_amplitude_make(film_ior * f.cos_film, base_ior * cos_base);
+    hdrp_i_brdf_amplitude p =
+        hdrp_i_brdf_amplitude_make(base_ior * f.cos_film, film_ior * cos_base);
+    float half_phase = HDRP_PI * (f.opd_um * 1e3f / wavelength_nm);
+    float sin2 = hdrp_sq(hdrp_sin(half_phase));
+    float qs = f.s.r * s.r;
+    float qp = f.p.r * p.r;
+    float ts = f.s.t * s.t / hdrp_max(hdrp_sq(1.0f + qs) - 4.0f * qs * sin2, HDRP_FLT_MIN);
+    float tp = f.p.t * p.t / hdrp_max(hdrp_sq(1.0f + qp) - 4.0f * qp * sin2, HDRP_FLT_MIN);
+    return hdrp_saturate(1.0f - 0.5f * (ts + tp));
+}
+
+HDRP_FN float hdrp_i_brdf_film_fast_channel(float r12, float r23, float s1, float s2)
+{
+    float t121 = 1.0f - r12;
+    float r123 = r12 * r23;
+    float rs = t121 * t121 * r23 / hdrp_max(1.0f - r123, HDRP_FLT_EPSILON);
+    float c1 = (rs - t121) * hdrp_sqrt(r123);
+    float c2 = c1 * hdrp_sqrt(r123);
+    /* The phase shift of pi at the first reflection turns the sign of odd orders. */
+    return hdrp_saturate(r12 + rs + 2.0f * (c2 * s2 - c1 * s1));
+}
+
+/** Reflectance of a thin film over a base: the talk's approximation, its defects corrected.
+ *  cos_theta     [0,1]     cosine of the angle above the film
+ *  outer_ior     [1,1.5]   IOR of the medium above
+ *  film_ior      [1,3]
+ *  thickness_nm  [0,3000]
+ *  fresnel0      [0,1]     of the base against air, per channel
+ *  returns       [0,1]     linear Rec.709
+ *  edges         1 at grazing; no neutral setting: thickness 0 is not the bare base
+ *  error         <= 0.75 absolute  @accuracy brdf_film_fast
+ *  error         <= 0.15 absolute, mean over the domain  @accuracy brdf_film_fast_mean
+ *  source        Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
+ *                Definition Render Pipeline", slides on iridescence (credit: Belcour)
+ *  note          corrected: XYZ was read as RGB, the phase ignored whether the base is denser than
+ *                the film, and 0/0 or the root of a negative number appeared at grazing and under a
+ *                coat. The talk's one thickness t in [0,1] is film_ior = 2 - t and
+ *                thickness_nm = 1500 t / film_ior. For comparison: hdrp_brdf_film is better by more
+ *                than a factor of ten */
+HDRP_FN hdrp_v3 hdrp_brdf_film_fast(float cos_theta, float outer_ior, float film_ior,
+                                    float thickness_nm, hdrp_v3 fresnel0)
+{
+    float c1 = hdrp_saturate(cos_theta);
+    float c2 = hdrp_brdf_refracted_cosine(c1, film_ior / outer_ior);
+    float r0 = hdrp_brdf_fresnel0_from_ior(film_ior, outer_ior);
+    float r12 = hdrp_brdf_f_schlick(r0, 1.0f, c1);
+    hdrp_v3 r23 = hdrp_brdf_f_schlick_rgb(fresnel0, 1.0f, c2);
+    float opd_um = 2e-3f * film_ior * thickness_nm * c2;
+    hdrp_v3 s1 = hdrp_i_brdf_film_spectrum(opd_um);
+    hdrp_v3 s2 = hdrp_i_brdf_film_spectrum(2.0f * opd_um);
+    return hdrp_v3_make(hdrp_i_brdf_film_fast_channel(r12, r23.x, s1.x, s2.x),
+                        hdrp_i_brdf_film_fast_channel(r12, r23.y, s1.y, s2.y),
+                        hdrp_i_brdf_film_fast_channel(r12, r23.z, s1.z, s2.z));
+}
+
+/** F0 of a Schlick curve that goes through a given reflectance.
+ *  f        [0,1]  reflectance at u
+ *  u        [0,1]  cosine between light and half vector
+ *  returns  [0,1]
+ *  edges    towards grazing, where every Schlick curve meets, the result tends to f itself
+ *  error    <= 3e-5 absolute, in hdrp_brdf_f_schlick of the result, for u >= 0.1
+ *           @accuracy brdf_fresnel0_from_schlick
+ *  source   Schlick 1994, "An Inexpensive BRDF Model for Physically-based Rendering", eq. 15
+ *           (inverted) */
+HDRP_FN float hdrp_brdf_fresnel0_from_schlick(float f, float u)
+{
+    float w = hdrp_brdf_schlick_weight(u);
+    float inverse = hdrp_saturate((f - w) / hdrp_max(1.0f - w, HDRP_FLT_EPSILON));
+    /* Above a weight of 0.6 (u < 0.1) the inverse only amplifies noise: fade to f. */
+    return hdrp_lerp(inverse, f, hdrp_saturate((w - 0.6f) * (1.0f / 0.4f)));
+}
+
+/* >>transmission
+ * Light that crosses the surface: through a thin wall with parallel sides, or into a volume.
+ * Diffuse light through a thin slab is part of the Lit model below. */
+
+/* Closest ratio of two IORs to 1 for which a rough interface is told from none. */
+#define HDRP_BRDF_ETA_MARGIN 1e-3f
+
+/* A refracted direction. */
+struct hdrp_brdf_refraction {
+    hdrp_v3 direction; /* unit; away from the surface, on the far side */
+    float transmits;   /* [0,1] 1, or 0 at total internal reflection */
+};
+HDRP_TYPEDEF(hdrp_brdf_refraction)
+
+/** Direction of light beyond a smooth interface.
+ *  v        unit      on the near side, pointing away from the surface
+ *  n        unit      normal on the side of v
+ *  eta      [0.25,4]  IOR of the near side over IOR of the far side
+ *  returns  valid     where total reflection leaves none, the mirror direction with transmits 0
+ *  edges    eta = 1 gives -v
+ *  error    <= 1e-6 absolute, per component, away from the critical angle
+ *           @accuracy brdf_refract
+ *  source   Born and Wolf 1999, "Principles of Optics", section 1.5.1 (Snell's law) */
+HDRP_FN hdrp_brdf_refraction hdrp_brdf_refract(hdrp_v3 v, hdrp_v3 n, float eta)
+{
+    hdrp_brdf_refraction r;
+    float c = hdrp_saturate(hdrp_v3_dot(v, n));
+    float k = 1.0f - eta * eta * (1.0f - c) * (1.0f + c);
+    float across = k >= 0.0f ? -eta : -1.0f;
+    float along = k >= 0.0f ? eta * c - hdrp_sqrt(hdrp_max(k, 0.0f)) : 2.0f * c;
+    r.direction =
+        hdrp_normalize_or(hdrp_v3_mad(hdrp_v3_scale(v, across), n, along), hdrp_v3_neg(v));
+    r.transmits = k >= 0.0f ? 1.0f : 0.0f;
+    return r;
+}
+
+/** Share of light that a volume lets through, from the colour it takes on after some distance.
+ *  attenuation_color       [0,1]    of white light after attenuation_distance_m, per component
+ *  attenuation_distance_m  [0,inf]  infinite for a clear volume
+ *  distance_m              [0,inf)  path in the volume
+ *  returns                 [0,1]    per component
+ *  edges                   1 for distance 0, whatever the volume; else 0 for a black colour or an
+ *                          attenuation distance of 0
+ *  error                   <= 3e-6 absolute  @accuracy brdf_volume_transmittance
+ *  source                  Beer-Lambert law, in the terms of glTF's KHR_materials_volume */
+HDRP_FN hdrp_v3 hdrp_brdf_volume_transmittance(hdrp_v3 attenuation_color,
+                                               float attenuation_distance_m, float distance_m)
+{
+    float d = hdrp_max(distance_m, 0.0f);
+    /* A path of no length stays at 1 where the volume is black, and 0 / inf is 0. */
+    float x = d > 0.0f ? d / hdrp_max(attenuation_distance_m, HDRP_FLT_MIN) : 0.0f;
+    float e = hdrp_min(x, HDRP_FLT_MAX);
+    /* The smallest normal float stands for black: its logarithm is finite, and 0 * inf is not. */
+    hdrp_v3 c = hdrp_v3_max(hdrp_v3_saturate(attenuation_color), HDRP_FLT_MIN);
+    return hdrp_v3_make(hdrp_exp2(hdrp_log2(c.x) * e), hdrp_exp2(hdrp_log2(c.y) * e),
+                        hdrp_exp2(hdrp_log2(c.z) * e));
+}
+
+/** Perceptual roughness that blurs what is seen through a rough interface.
+ *  perceptual_roughness  [0,1]  of the interface
+ *  ior                   [1,3]  of the volume behind it
+ *  returns               [0,1]
+ *  edges                 0 for IOR 1, which bends nothing; unchanged from IOR 1.5 upwards
+ *  error                 none: an empirical scale
+ *  source                Khronos 2021, "glTF Sample Viewer", applyIorToRoughness */
+HDRP_FN float hdrp_brdf_refraction_perceptual_roughness(float perceptual_roughness, float ior)
+{
+    return hdrp_saturate(perceptual_roughness) * hdrp_saturate(2.0f * (ior - 1.0f));
+}
+
+/** Rough refraction into a volume: BTDF times the cosine of l.
+ *  n        unit       normal on the side of v
+ *  v        unit       near side, towards the viewer
+ *  l        unit       far side, towards the light
+ *  alpha    [0,1]      GGX width
+ *  eta      [0.25,4]   IOR of the far side over IOR of the near side
+ *  returns  [0,inf)    1/sr, before colour and absorption; Fresnel transmission is included
+ *  edges    0 where v or l is on the wrong side and beyond the critical angle; eta within
+ *           HDRP_BRDF_ETA_MARGIN of 1 acts as that far from it
+ *  error    <= 2e-4 relative, alpha of at least 0.05 and cosines of at least 0.05
+ *           @accuracy brdf_btdf_ggx
+ *  source   Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces", eq. 21
+ *  note     scaled by eta^2, as for an engine that keeps L / ior^2 in a volume: a white furnace
+ *           stays white */
+HDRP_FN float hdrp_brdf_btdf_ggx(hdrp_v3 n, hdrp_v3 v, hdrp_v3 l, float alpha, float eta)
+{
+    float away = eta < 1.0f ? -HDRP_BRDF_ETA_MARGIN : HDRP_BRDF_ETA_MARGIN;
+    float e = hdrp_abs(eta - 1.0f) < HDRP_BRDF_ETA_MARGIN ? 1.0f + away : eta;
+    float n_dot_v = hdrp_v3_dot(n, v);
+    float n_dot_l = -hdrp_v3_dot(n, l);
+    hdrp_v3 sum = hdrp_v3_mad(v, l, e);
+    hdrp_v3 h = hdrp_normalize_or(hdrp_v3_scale(sum, hdrp_sign_not_zero(hdrp_v3_dot(sum, n))), n);
+    float v_dot_h = hdrp_v3_dot(v, h);
+    float l_dot_h = -hdrp_v3_dot(l, h);
+    float d = hdrp_brdf_d_ggx_vectors(n, h, alpha);
+    float vis = hdrp_brdf_v_smith_ggx(n_dot_l, n_dot_v, alpha);
+    float f = hdrp_brdf_f_dielectric_exact(v_dot_h, e);
+    float w = v_dot_h - e * l_dot_h;
+    float facing = hdrp_min(hdrp_min(n_dot_v, n_dot_l), hdrp_min(v_dot_h, l_dot_h));
+    float t =
+        4.0f * e * e * v_dot_h * l_dot_h * n_dot_l * (1.0f - f) * d * vis / hdrp_max(w * w, 1e-12f);
+    return facing > 0.0f ? t : 0.0f;
+}
+
+/** Rough transmission through a thin wall: BTDF times the cosine of l.
+ *  n         unit      normal on the side of v
+ *  v         unit      near side, towards the viewer
+ *  l         unit      far side, towards the light
+ *  alpha     [0,1]     GGX width
+ *  fresnel0  [0,1]     of one side of the wall
+ *  returns   [0,inf)   1/sr, before colour; Fresnel transmission is included
+ *  edges     0 where v or l is on the wrong side
+ *  error     none: the reflective lobe with l mirrored to the side of v, and 1 - F in place of F
+ *  source    glTF 2.0, KHR_materials_transmission, "Implementation Notes" */
+HDRP_FN float hdrp_brdf_btdf_thin_ggx(hdrp_v3 n, hdrp_v3 v, hdrp_v3 l, float alpha, float fresnel0)
+{
+    hdrp_v3 mirrored = hdrp_v3_mad(l, n, -2.0f * hdrp_v3_dot(n, l));
+    hdrp_v3 h = hdrp_brdf_half_vector(mirrored, v, n);
+    float n_dot_v = hdrp_v3_dot(n, v);
+    float n_dot_l = hdrp_v3_dot(n, mirrored);
+    float dv = hdrp_brdf_d_ggx_vectors(n, h, alpha) *
+               hdrp_brdf_v_smith_ggx(hdrp_max(n_dot_l, 0.0f), hdrp_max(n_dot_v, 0.0f), alpha);
+    float f = hdrp_brdf_f_schlick(fresnel0, 1.0f, hdrp_saturate(hdrp_v3_dot(v, h)));
+    return hdrp_min(n_dot_v, n_dot_l) > 0.0f ? (1.0f - f) * dv * n_dot_l : 0.0f;
+}
+
+/* >>specular antialiasing
+ * Normals that vary within a pixel widen its lobe. Variances are of the slope, in alpha^2 units. */
+
+/** Variance of the normal across a pixel, from its screen-space derivatives.
+ *  dndx      finite  change of the unit shading normal to the next pixel in x
+ *  dndy      finite  in y
+ *  strength  [0,1]   variance of the pixel filter in pixels^2; 0.25 is a pixel wide
+ *  limit     [0,1]   largest variance; 0.18 keeps silhouettes from turning dull
+ *  returns   [0,1]
+ *  edges     NaN derivatives, as at the edge of a quad, give 0
+ *  error     none: definition
+ *  source    Tokuyoshi and Kaplanyan 2019, "Improved Geometric Specular Antialiasing", listing 3 */
+HDRP_FN float hdrp_brdf_variance_from_derivatives(hdrp_v3 dndx, hdrp_v3 dndy, float strength,
+                                                  float limit)
+{
+    float square = hdrp_v3_dot(dndx, dndx) + hdrp_v3_dot(dndy, dndy);
+    return hdrp_clamp(2.0f * strength * hdrp_min(square, 4.0f), 0.0f, limit);
+}
+
+/** Variance of the normals under a texel, from the length of their average.
+ *  average_length  [0,1]  of the filtered tangent-space normals before normalisation
+ *  returns         [0,1]
+ *  edges           0 for length 1, 1 for 0.5 and below, where the average says no more
+ *  error           none: definition
+ *  source          Toksvig 2005, "Mipmapping Normal Maps", eq. 1, as a GGX width */
+HDRP_FN float hdrp_brdf_variance_from_average_normal(float average_length)
+{
+    float r = hdrp_saturate(average_length);
+    /* Slope variance (1 - r) / r of a Gaussian lobe; alpha^2 is twice that. */
+    return hdrp_saturate(2.0f * (1.0f - r) / hdrp_max(r, 0.5f));
+}
+
+/** Perceptual roughness of a lobe that also stands for normals of some variance.
+ *  perceptual_roughness  [0,1]
+ *  variance              [0,1]  of the normals, as given by the functions above; sums add up
+ *  returns               [0,1]
+ *  edges                 unchanged for variance 0, never less than perceptual_roughness
+ *  error                 <= 2.5e-7 absolute  @accuracy brdf_perceptual_roughness_filtered
+ *  source                Kaplanyan et al. 2016, "Filtering Distributions of Normals for Shading
+ *                        Antialiasing", eq. 8 */
+HDRP_FN float hdrp_brdf_perceptual_roughness_filtered(float perceptual_roughness, float variance)
+{
+    float alpha = hdrp_sq(hdrp_saturate(perceptual_roughness));
+    return hdrp_sqrt(hdrp_sqrt(hdrp_min(alpha * alpha + hdrp_max(variance, 0.0f), 1.0f)));
+}
+
+/* >>occlusion */
+
+/** Share of the specular lobe that ambient occlusion leaves visible.
+ *  ambient_occlusion     [0,1]  1 is open
+ *  n_dot_v               [0,1]  cosine between unit normal and direction to the viewer
+ *  perceptual_roughness  [0,1]
+ *  returns               [0,1]
+ *  edges                 exactly 1 for ambient_occlusion 1, 0 for 0
+ *  error                 none: an empirical effect
+ *  source                Lagarde and de Rousiers 2014, "Moving Frostbite to Physically Based
+ *                        Rendering", listing 26 */
+HDRP_FN float hdrp_brdf_specular_occlusion(float ambient_occlusion, float n_dot_v,
+                                           float perceptual_roughness)
+{
+    float ao = hdrp_saturate(ambient_occlusion);
+    float alpha = hdrp_sq(hdrp_saturate(perceptual_roughness));
+    float open = hdrp_max(hdrp_saturate(n_dot_v) + ao, HDRP_FLT_MIN);
+    float s = hdrp_pow(open, hdrp_exp2(-16.0f * alpha - 1.0f)) - 1.0f + ao;
+    return ao < 1.0f ? hdrp_saturate(s) * (ao > 0.0f ? 1.0f : 0.0f) : 1.0f;
+}
+
+#endif /* HDRP_BRDF_LOBES_H */
