@@ -4,9 +4,7 @@
 #include "scene.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 typedef struct builder {
@@ -102,8 +100,7 @@ static rd_material glass(float ior, float thickness_m)
     rd_material m = dielectric(hdrp_v3_splat(1.0f), 0.0f);
     m.ior = ior;
     m.transmission = 1.0f;
-    m.thickness_m = thickness_m;
-    m.has_volume = thickness_m > 0.0f;
+    m.thickness = thickness_m;
     return m;
 }
 

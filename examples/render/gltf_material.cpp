@@ -255,8 +255,7 @@ void read_transmission(material_importer& m, const Value& e, rd_material* to)
 void read_volume(material_importer& m, const Value& e, rd_material* to)
 {
     const double distance = number(e, "attenuationDistance", double(HDRP_FLT_MAX));
-    to->thickness_m = number_f(e, "thicknessFactor", 0.0f);
-    to->has_volume = to->thickness_m > 0.0f;
+    to->thickness = number_f(e, "thicknessFactor", 0.0f);
     to->attenuation_distance_m = float(std::fmin(distance, double(HDRP_FLT_MAX)));
     to->attenuation_color = color(e, "attenuationColor", to->attenuation_color);
     set_slot(m, to, RD_SLOT_THICKNESS, e, "thicknessTexture");

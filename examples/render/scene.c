@@ -66,6 +66,7 @@ bool rd_mesh_allocate(rd_mesh* mesh, uint32_t vertices, uint32_t triangles, bool
     bool ok;
     mesh->vertex_count = vertices;
     mesh->triangle_count = triangles;
+    mesh->scale = 1.0f;
     mesh->positions = (hdrp_v3*)allocate((size_t)vertices + 1, sizeof *mesh->positions);
     mesh->indices = (uint32_t*)allocate((size_t)triangles * 3, sizeof *mesh->indices);
     ok = mesh->positions && mesh->indices;
@@ -115,7 +116,9 @@ static void turn_around(rd_mesh* mesh)
 
 void rd_mesh_transform(rd_mesh* mesh, rd_affine a)
 {
-    float sign = hdrp_sign_not_zero(rd_affine_determinant(a));
+    float determinant = rd_affine_determinant(a);
+    float sign = hdrp_sign_not_zero(determinant);
+    mesh->scale *= cbrtf(hdrp_abs(determinant));
     for (uint32_t i = 0; i < mesh->vertex_count; ++i) {
         mesh->positions[i] = rd_affine_point(a, mesh->positions[i]);
         if (mesh->normals) {

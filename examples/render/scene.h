@@ -72,8 +72,7 @@ typedef struct rd_material {
     hdrp_v3 specular_color;
     float ior;
     float transmission;
-    bool has_volume;
-    float thickness_m;            /* of a slab; a closed mesh with thickness is a solid */
+    float thickness; /* of what is below the surface, in units of the file; 0: a thin wall */
     float attenuation_distance_m; /* may be infinite */
     hdrp_v3 attenuation_color;
     hdrp_u32 features; /* HDRP_BRDF_FEATURE_... */
@@ -86,6 +85,7 @@ typedef struct rd_mesh {
     char name[RD_NAME_MAX];
     int material;
     uint32_t vertex_count, triangle_count;
+    float scale; /* metres for one unit of the file: the thickness of volumes grows with it */
     hdrp_v3* positions; /* one element of padding follows: Embree reads 16 bytes at a time */
     hdrp_v3* normals;   /* unit; NULL: flat */
     hdrp_v4* tangents;  /* unit, w is the sign of the bitangent */

@@ -385,12 +385,12 @@ static void set_film(const patch* p, rd_surface* out)
 static void set_transmission(const patch* p, rd_surface* out)
 {
     const rd_material* m = p->material;
-    out->thickness_m = 0.0f;
     if (!(m->features & HDRP_BRDF_FEATURE_REFRACTION)) {
         return;
     }
     out->brdf.transmission = m->transmission * sample(p, RD_SLOT_TRANSMISSION, white()).x;
-    out->thickness_m = m->thickness_m * sample(p, RD_SLOT_THICKNESS, white()).y;
+    out->brdf.volume_thickness_m =
+        m->thickness * p->mesh->scale * sample(p, RD_SLOT_THICKNESS, white()).y;
 }
 
 void rd_surface_evaluate(const rd_scene* scene, const rd_ray* ray, const rd_ray_spread* spread,

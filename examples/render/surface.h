@@ -21,7 +21,6 @@ typedef struct rd_surface {
     float alpha;
     bool back_face;
     float normal_map_length; /* of the filtered normal map vector: 1 is flat, less is rough */
-    float thickness_m;       /* of the volume below the surface, 0 without one */
 } rd_surface;
 
 /* Spread NULL: no footprint, textures are sampled at their finest level. */

@@ -132,7 +132,7 @@ hdrp_v3 rd_view_value(rd_view view, const rd_camera* camera, const rd_surface* s
     case RD_VIEW_FILM:
         return hdrp_v3_make(b->film_mask, b->film_thickness_nm / 1000.0f, 0.0f);
     case RD_VIEW_TRANSMISSION:
-        return hdrp_v3_make(b->transmission, s->thickness_m, 0.0f);
+        return hdrp_v3_make(b->transmission, b->volume_thickness_m, 0.0f);
     default:
         return hdrp_v3_splat(0.0f);
     }
