@@ -1,0 +1,55 @@
+/* The command line. */
+#ifndef RD_OPTIONS_H
+#define RD_OPTIONS_H
+
+#include "hdrp_math.h"
+#include "report.h"
+#include "view.h"
+
+typedef enum rd_quality { RD_QUALITY_FAST, RD_QUALITY_BALANCED, RD_QUALITY_REFERENCE } rd_quality;
+typedef enum rd_path { RD_PATH_DEFERRED, RD_PATH_FORWARD } rd_path;
+
+/* What --features turns on and off. */
+#define RD_FEATURE_CLEAR_COAT   (1u << 0)
+#define RD_FEATURE_ANISOTROPY   (1u << 1)
+#define RD_FEATURE_IRIDESCENCE  (1u << 2)
+#define RD_FEATURE_REFRACTION   (1u << 3)
+#define RD_FEATURE_NORMAL_MAPS  (1u << 4)
+#define RD_FEATURE_OCCLUSION    (1u << 5)
+#define RD_FEATURE_ALPHA_BLEND  (1u << 6)
+#define RD_FEATURE_LIGHTS       (1u << 7)
+#define RD_FEATURE_SHADOWS      (1u << 8)
+#define RD_FEATURE_ENVIRONMENT  (1u << 9)
+#define RD_FEATURE_SPECULAR_AA  (1u << 10)
+#define RD_FEATURE_MULTISCATTER (1u << 11)
+#define RD_FEATURE_ALL          ((1u << 12) - 1u)
+
+typedef struct rd_options {
+    const char* scene; /* NULL: the built-in one */
+    const char* env;   /* NULL: the procedural sky */
+    const char* out;
+    const char* compare;
+    const char* stats;
+    float env_lux; /* 0: as the image says */
+    int width, height;
+    int spp; /* 0: what the quality says */
+    int lights;
+    int frames;
+    uint32_t seed;
+    rd_quality quality;
+    rd_path path;
+    rd_view view;
+    uint32_t features;
+    bool has_exposure, has_eye, has_target, has_fov, has_camera;
+    float exposure_ev100;
+    int camera;
+    hdrp_v3 eye, target;
+    float fov_deg;
+    bool progress; /* show it even where stderr is no terminal */
+    bool show_help, show_version;
+} rd_options;
+
+bool rd_options_parse(rd_options* o, int argc, char** argv, rd_report* report);
+void rd_options_print_help(void);
+
+#endif
