@@ -1,0 +1,785 @@
+/* hdrp_pack.h - bit-level codecs and octahedral normals.
+ * SPDX-License-Identifier: MIT
+ *
+ * See hdrp_math.h for the languages, the conventions and the override macros.
+ *
+ * A codec comes in up to two forms. A *code* is the integer that memory holds. A *target value* is
+ * the float that a fragment shader writes so that the hardware stores that code; for a UNORM render
+ * target of b bits it is code / (2^b - 1). Between two codes Direct3D lets hardware be off by 0.6
+ * of a code, and Vulkan only prefers the nearest, so that two devices may store different codes.
+ * Where a code is made of several numbers that would change the upper ones. There, target values
+ * are exact codes, which every device stores alike; a channel that holds one plain number is left
+ * to the hardware to round.
+ *
+ * Encoders are total: any material or texture value gives a valid code. Decoders are total: any bit
+ * pattern gives finite values within their documented range.
+ *
+ * >>index of the functions, without hdrp_pack_ (written by tools/api_check.py --write)
+ *   scalar codecs: unorm_from_float float_from_unorm unorm_target snorm_from_float float_from_snorm
+ *       biased_snorm_target float_from_biased_snorm_target srgb8_from_linear linear_from_srgb8
+ *       rgba8_from_v4 v4_from_rgba8 srgba8_from_linear linear_from_srgba8
+ *   small floats: half_from_float half_from_float_saturated float_from_half r11g11b10f_from_rgb
+ *       rgb_from_r11g11b10f
+ *   float and integer together: float_uint_code float_uint_from_code float_uint
+ *       float_uint_from_target
+ *   octahedral normals: oct_snorm_from_normal oct_snorm_from_normal_exact normal_from_oct_snorm
+ *       oct_unorm_from_normal oct_unorm_from_normal_exact normal_from_oct_unorm oct24_target
+ *       oct24_from_target
+ *   tangent frame: angle11_from_tangent tangent_from_angle11 angle11_from_tangent_fast
+ *       tangent_from_angle11_fast
+ * >>end */
+#ifndef HDRP_PACK_H
+#define HDRP_PACK_H
+
+#include "hdrp_brdf.h"
+
+#if HDRP_VERSION != 100
+#error "hdrp_pack.h 0.1.0 needs the hdrp_math.h of the same version"
+#endif
+
+/* >>scalar codecs */
+
+/** The UNORM code nearest to x.
+ *  x        any    value; limited to [0,1]
+ *  bits     [0,16] width of the code
+ *  returns  [0,65535] code, at most 2^bits - 1
+ *  edges    NaN gives 0; 0.5, the only possible tie, rounds up
+ *  error    <= 0.5 absolute in codes: correctly rounded for every float  @accuracy pack_unorm_codes
+ *  source   Direct3D 11.3 functional specification, "FLOAT -> UNORM"
+ *  note     x * (2^bits - 1) would round before it is rounded; x * 2^bits is exact, and so are both
+ *           comparisons with its fraction */
+HDRP_FN hdrp_u32 hdrp_pack_unorm_from_float(float x, hdrp_u32 bits)
+{
+    float v = hdrp_saturate(x);
+    float scaled = v * hdrp_f32_from_u32(1u << bits);
+    hdrp_u32 whole = hdrp_u32_from_f32(scaled);
+    float fraction = scaled - hdrp_f32_from_u32(whole);
+    return whole + (fraction - 0.5f >= v ? 1u : 0u) - (fraction < v - 0.5f ? 1u : 0u);
+}
+
+/** Value of a UNORM code.
+ *  code     [0,65535] at most 2^bits - 1
+ *  bits     [1,16] width of the code
+ *  returns  [0,65535] code / (2^bits - 1), in [0,1] for a code that fits
+ *  edges    the largest code is exactly 1
+ *  error    <= 0.5 ulp  @accuracy pack_float_from_unorm
+ *  source   Direct3D 11.3 functional specification, "UNORM -> FLOAT" */
+HDRP_FN float hdrp_pack_float_from_unorm(hdrp_u32 code, hdrp_u32 bits)
+{
+    return hdrp_f32_from_u32(code) / hdrp_f32_from_u32((1u << bits) - 1u);
+}
+
+/** Target value of a UNORM: x rounded to a multiple of 1 / (2^bits - 1).
+ *  x        any    value; limited to [0,1]
+ *  bits     [1,16] width of the code
+ *  returns  [0,1]  what every render target stores without rounding
+ *  edges    NaN gives 0
+ *  error    none: hdrp_pack_unorm_from_float, then hdrp_pack_float_from_unorm
+ *  source   see hdrp_pack_unorm_from_float */
+HDRP_FN float hdrp_pack_unorm_target(float x, hdrp_u32 bits)
+{
+    return hdrp_pack_float_from_unorm(hdrp_pack_unorm_from_float(x, bits), bits);
+}
+
+/* Two's complement of a magnitude in the low bits of a word. */
+HDRP_FN hdrp_u32 hdrp_i_pack_signed_code(hdrp_u32 magnitude, float sign_of, hdrp_u32 bits)
+{
+    return (sign_of < 0.0f ? 0u - magnitude : magnitude) & ((1u << bits) - 1u);
+}
+
+/* Value of a two's complement code. The most negative one has no counterpart and counts as the
+ * next, as in every SNORM format. */
+HDRP_FN float hdrp_i_pack_float_from_signed_code(hdrp_u32 code, hdrp_u32 bits)
+{
+    hdrp_u32 half_range = 1u << (bits - 1u);
+    float value = hdrp_f32_from_u32(code & (half_range - 1u));
+    float top = hdrp_f32_from_u32(half_range);
+    return (code & half_range) != 0u ? hdrp_max(value - top, 1.0f - top) : value;
+}
+
+/** The SNORM code nearest to x, in two's complement.
+ *  x        any    value; limited to [-1,1]
+ *  bits     [2,16] width of the code
+ *  returns  [0,65535] code in the low bits
+ *  edges    NaN gives 0; 0.5 and -0.5 round away from 0; the most negative code is not used
+ *  error    <= 0.5 absolute in codes: correctly rounded for every float  @accuracy pack_snorm_codes
+ *  source   Direct3D 11.3 functional specification, "FLOAT -> SNORM" */
+HDRP_FN hdrp_u32 hdrp_pack_snorm_from_float(float x, hdrp_u32 bits)
+{
+    return hdrp_i_pack_signed_code(hdrp_pack_unorm_from_float(hdrp_abs(x), bits - 1u), x, bits);
+}
+
+/** Value of an SNORM code in two's complement.
+ *  code     any    the low bits are used
+ *  bits     [2,16] width of the code
+ *  returns  [-1,1] code / (2^(bits - 1) - 1)
+ *  edges    the two most negative codes are both -1
+ *  error    <= 0.5 ulp  @accuracy pack_float_from_snorm
+ *  source   Direct3D 11.3 functional specification, "SNORM -> FLOAT" */
+HDRP_FN float hdrp_pack_float_from_snorm(hdrp_u32 code, hdrp_u32 bits)
+{
+    return hdrp_i_pack_float_from_signed_code(code, bits) /
+           hdrp_f32_from_u32((1u << (bits - 1u)) - 1u);
+}
+
+/** Target value, for a UNORM target, of a number in [-1,1] whose 0 must stay 0.
+ *  x        any    value; limited to [-1,1]
+ *  bits     [2,16] width of the target
+ *  returns  [0,1]  (2^(bits - 1) + SNORM code) / (2^bits - 1)
+ *  edges    NaN gives the value of 0; the lowest code is not used
+ *  error    <= 0.00393701 absolute after decoding, 8 bits  @accuracy pack_biased_snorm_8
+ *  source   offset binary
+ *  note     the usual x / 2 + 1/2 cannot store 0: a UNORM has an even number of codes */
+HDRP_FN float hdrp_pack_biased_snorm_target(float x, hdrp_u32 bits)
+{
+    hdrp_u32 half_range = 1u << (bits - 1u);
+    hdrp_u32 code = hdrp_pack_snorm_from_float(x, bits) ^ half_range;
+    return hdrp_pack_float_from_unorm(code, bits);
+}
+
+/** The number that hdrp_pack_biased_snorm_target stored.
+ *  target   any    value of the target; limited to [0,1]
+ *  bits     [2,16] width of the target
+ *  returns  [-1,1]
+ *  edges    NaN gives -1, the two lowest codes both -1
+ *  error    none: hdrp_pack_unorm_from_float, then hdrp_pack_float_from_snorm
+ *  source   see hdrp_pack_biased_snorm_target */
+HDRP_FN float hdrp_pack_float_from_biased_snorm_target(float target, hdrp_u32 bits)
+{
+    hdrp_u32 half_range = 1u << (bits - 1u);
+    return hdrp_pack_float_from_snorm(hdrp_pack_unorm_from_float(target, bits) ^ half_range, bits);
+}
+
+/** The 8-bit sRGB code nearest to a linear value.
+ *  x        any    linear value; limited to [0,1]
+ *  returns  [0,255] code
+ *  edges    NaN gives 0
+ *  error    <= 0.50002 absolute in codes  @accuracy pack_srgb8_codes
+ *  source   IEC 61966-2-1:1999, section 5.3
+ *  note     nearest in encoded values, as render targets round */
+HDRP_FN hdrp_u32 hdrp_pack_srgb8_from_linear(float x)
+{
+    return hdrp_pack_unorm_from_float(hdrp_srgb_from_linear(hdrp_saturate(x)), 8u);
+}
+
+/** Linear value of an 8-bit sRGB code.
+ *  code     [0,255]
+ *  returns  [0,1]  linear value
+ *  edges    0 and 255 are exactly 0 and 1
+ *  error    <= 5e-7 relative  @accuracy pack_linear_from_srgb8
+ *  source   IEC 61966-2-1:1999, section 5.2 */
+HDRP_FN float hdrp_pack_linear_from_srgb8(hdrp_u32 code)
+{
+    return hdrp_linear_from_srgb(hdrp_pack_float_from_unorm(code & 255u, 8u));
+}
+
+/** RGBA8 UNORM texel; red in the low byte.
+ *  v        any    each component limited to [0,1]
+ *  returns  any    the four codes
+ *  edges    NaN gives 0
+ *  error    none: four times hdrp_pack_unorm_from_float
+ *  source   Vulkan specification, VK_FORMAT_R8G8B8A8_UNORM on a little-endian host */
+HDRP_FN hdrp_u32 hdrp_pack_rgba8_from_v4(hdrp_v4 v)
+{
+    return hdrp_pack_unorm_from_float(v.x, 8u) | (hdrp_pack_unorm_from_float(v.y, 8u) << 8u) |
+           (hdrp_pack_unorm_from_float(v.z, 8u) << 16u) |
+           (hdrp_pack_unorm_from_float(v.w, 8u) << 24u);
+}
+
+/** Values of an RGBA8 UNORM texel.
+ *  texel    any    red in the low byte
+ *  returns  [0,1]
+ *  edges    none
+ *  error    none: four times hdrp_pack_float_from_unorm
+ *  source   Vulkan specification, VK_FORMAT_R8G8B8A8_UNORM on a little-endian host */
+HDRP_FN hdrp_v4 hdrp_pack_v4_from_rgba8(hdrp_u32 texel)
+{
+    return hdrp_v4_make(hdrp_pack_float_from_unorm(texel & 255u, 8u),
+                        hdrp_pack_float_from_unorm((texel >> 8u) & 255u, 8u),
+                        hdrp_pack_float_from_unorm((texel >> 16u) & 255u, 8u),
+                        hdrp_pack_float_from_unorm(texel >> 24u, 8u));
+}
+
+/** RGBA8 sRGB texel of a linear colour with a plain alpha; red in the low byte.
+ *  v        any    each component limited to [0,1]
+ *  returns  any    the four codes
+ *  edges    NaN gives 0
+ *  error    none: hdrp_pack_srgb8_from_linear, and hdrp_pack_unorm_from_float for alpha
+ *  source   Vulkan specification, VK_FORMAT_R8G8B8A8_SRGB on a little-endian host */
+HDRP_FN hdrp_u32 hdrp_pack_srgba8_from_linear(hdrp_v4 v)
+{
+    return hdrp_pack_srgb8_from_linear(v.x) | (hdrp_pack_srgb8_from_linear(v.y) << 8u) |
+           (hdrp_pack_srgb8_from_linear(v.z) << 16u) | (hdrp_pack_unorm_from_float(v.w, 8u) << 24u);
+}
+
+/** Linear colour and alpha of an RGBA8 sRGB texel.
+ *  texel    any    red in the low byte
+ *  returns  [0,1]
+ *  edges    none
+ *  error    none: hdrp_pack_linear_from_srgb8, and hdrp_pack_float_from_unorm for alpha
+ *  source   Vulkan specification, VK_FORMAT_R8G8B8A8_SRGB on a little-endian host */
+HDRP_FN hdrp_v4 hdrp_pack_linear_from_srgba8(hdrp_u32 texel)
+{
+    return hdrp_v4_make(hdrp_pack_linear_from_srgb8(texel & 255u),
+                        hdrp_pack_linear_from_srgb8((texel >> 8u) & 255u),
+                        hdrp_pack_linear_from_srgb8((texel >> 16u) & 255u),
+                        hdrp_pack_float_from_unorm(texel >> 24u, 8u));
+}
+
+/* >>small floats
+ * Half, and the 11- and 10-bit channels of R11G11B10F: five exponent bits, bias 15, and 10, 6 or 5
+ * mantissa bits. Integer arithmetic throughout, so that neither the rounding mode nor flushed
+ * denormals of a device matter. */
+
+/* Rounds the bits of a finite float >= 0 to such a format, to nearest with ties to even. Too large
+ * a value gives the code of infinity or one above it. */
+HDRP_FN hdrp_u32 hdrp_i_pack_small_float(hdrp_u32 magnitude, hdrp_u32 mantissa_bits)
+{
+    hdrp_u32 drop = 23u - mantissa_bits;
+    hdrp_u32 exponent = magnitude >> 23u;
+    /* Below 2^-14, exponent 113, the result is denormal: a fixed-point number, whose last bit is
+     * worth 2^(-14 - mantissa_bits). From a shift by 25 on everything rounds to 0. */
+    hdrp_u32 denormal_shift = exponent + 25u < drop + 113u ? 25u : drop + 113u - exponent;
+    hdrp_u32 shift = exponent < 113u ? denormal_shift : drop;
+    hdrp_u32 value =
+        exponent < 113u ? (magnitude & 0x7fffffu) | 0x800000u : magnitude - 0x38000000u;
+    return (value + ((1u << (shift - 1u)) - 1u) + ((value >> shift) & 1u)) >> shift;
+}
+
+HDRP_FN float hdrp_i_pack_float_from_small(hdrp_u32 code, hdrp_u32 mantissa_bits)
+{
+    hdrp_u32 exponent = code >> mantissa_bits;
+    hdrp_u32 aligned = code << (23u - mantissa_bits);
+    /* Exponents are re-biased by 112; that of infinity and NaN goes from 31 to 255. */
+    float normal = hdrp_f32_from_bits(aligned + (exponent == 31u ? 0x70000000u : 0x38000000u));
+    float denormal_unit = hdrp_f32_from_bits((113u - mantissa_bits) << 23u);
+    return exponent == 0u ? hdrp_f32_from_u32(code) * denormal_unit : normal;
+}
+
+/* The code of one unsigned channel, see hdrp_pack_r11g11b10f_from_rgb. */
+HDRP_FN hdrp_u32 hdrp_i_pack_unsigned_float(float x, hdrp_u32 mantissa_bits)
+{
+    hdrp_u32 bits = hdrp_bits_from_f32(x);
+    hdrp_u32 magnitude = bits & 0x7fffffffu;
+    hdrp_u32 infinity = 31u << mantissa_bits;
+    hdrp_u32 rounded = hdrp_i_pack_small_float(magnitude, mantissa_bits);
+    hdrp_u32 finite = rounded < infinity ? rounded : infinity - 1u;
+    hdrp_u32 positive = magnitude == 0x7f800000u ? infinity : finite;
+    hdrp_u32 not_nan = bits == magnitude ? positive : 0u;
+    return magnitude > 0x7f800000u ? infinity | (1u << (mantissa_bits - 1u)) : not_nan;
+}
+
+HDRP_FN hdrp_u32 hdrp_i_pack_half(float x, hdrp_u32 overflow)
+{
+    hdrp_u32 bits = hdrp_bits_from_f32(x);
+    hdrp_u32 magnitude = bits & 0x7fffffffu;
+    hdrp_u32 rounded = hdrp_i_pack_small_float(magnitude, 10u);
+    hdrp_u32 number = rounded < overflow ? rounded : overflow;
+    /* A quiet NaN keeps the upper bits of its payload. */
+    hdrp_u32 nan = 0x7e00u | ((magnitude >> 13u) & 0x3ffu);
+    return ((bits >> 16u) & 0x8000u) | (magnitude > 0x7f800000u ? nan : number);
+}
+
+/** Half-precision code of x, rounded to nearest with ties to even.
+ *  x        any    number, infinity or NaN
+ *  returns  [0,65535] IEEE 754 binary16
+ *  edges    from 65520 on infinity; below 2^-14 denormal, up to 2^-25 zero; the sign of zero is
+ *           kept; NaN gives a quiet NaN of the same sign and upper payload
+ *  error    <= 4.8829e-4 relative in [2^-14,65520)  @accuracy pack_half
+ *  error    <= 2.9803e-8 absolute below 2^-14  @accuracy pack_half_denormal
+ *  source   IEEE 754-2008, sections 3.6 and 4.3.1 */
+HDRP_FN hdrp_u32 hdrp_pack_half_from_float(float x)
+{
+    return hdrp_i_pack_half(x, 0x7c00u);
+}
+
+/** hdrp_pack_half_from_float without infinities: the recommended form for light.
+ *  x        any    number, infinity or NaN
+ *  returns  [0,65535] IEEE 754 binary16
+ *  edges    from 65520 on, and at infinity, 65504 with the sign of x; NaN stays NaN
+ *  error    none: hdrp_pack_half_from_float where that is finite
+ *  source   IEEE 754-2008, sections 3.6 and 4.3.1 */
+HDRP_FN hdrp_u32 hdrp_pack_half_from_float_saturated(float x)
+{
+    return hdrp_i_pack_half(x, 0x7bffu);
+}
+
+/** Value of a half-precision code.
+ *  code     any    IEEE 754 binary16 in the low 16 bits
+ *  returns  any    the same value, infinity or NaN
+ *  edges    denormals and the sign of zero are kept
+ *  error    none: exact
+ *  source   IEEE 754-2008, section 3.4 */
+HDRP_FN float hdrp_pack_float_from_half(hdrp_u32 code)
+{
+    float magnitude = hdrp_i_pack_float_from_small(code & 0x7fffu, 10u);
+    return hdrp_f32_from_bits(hdrp_bits_from_f32(magnitude) | ((code & 0x8000u) << 16u));
+}
+
+/** R11G11B10F texel, rounded to nearest with ties to even; red in the low bits.
+ *  rgb      any    colour
+ *  returns  any    VK_FORMAT_B10G11R11_UFLOAT_PACK32, DXGI_FORMAT_R11G11B10_FLOAT
+ *  edges    negative numbers and -infinity give 0; finite numbers above 65024 (red, green) or 64512
+ *           (blue) give that number; infinity and NaN of either sign stay what they are
+ *  error    <= 0.0077520 relative for red and green in [2^-14,65024]  @accuracy pack_r11
+ *  error    <= 0.0153847 relative for blue in [2^-14,64512]  @accuracy pack_b10
+ *  source   Vulkan specification, "Unsigned 11-Bit Floating-Point Numbers" and the 10-bit section
+ *  note     hardware may also round towards 0, which darkens by half a step and blue most; a shader
+ *           that wants this function's result everywhere writes to an R32_UINT target */
+HDRP_FN hdrp_u32 hdrp_pack_r11g11b10f_from_rgb(hdrp_v3 rgb)
+{
+    return hdrp_i_pack_unsigned_float(rgb.x, 6u) | (hdrp_i_pack_unsigned_float(rgb.y, 6u) << 11u) |
+           (hdrp_i_pack_unsigned_float(rgb.z, 5u) << 22u);
+}
+
+/** Colour of an R11G11B10F texel.
+ *  texel    any    red in the low bits
+ *  returns  any    never negative; infinity and NaN as they are
+ *  edges    denormals are kept
+ *  error    none: exact
+ *  source   Vulkan specification, "Unsigned 11-Bit Floating-Point Numbers" and the 10-bit
+ *           section */
+HDRP_FN hdrp_v3 hdrp_pack_rgb_from_r11g11b10f(hdrp_u32 texel)
+{
+    return hdrp_v3_make(hdrp_i_pack_float_from_small(texel & 2047u, 6u),
+                        hdrp_i_pack_float_from_small((texel >> 11u) & 2047u, 6u),
+                        hdrp_i_pack_float_from_small(texel >> 22u, 5u));
+}
+
+/* >>float and integer together
+ * One UNORM channel of bits_target bits that holds an integer in its upper bits_i bits and a float
+ * in [0,1] in the rest. */
+
+struct hdrp_pack_float_uint_pair {
+    float f;    /* [0,1] */
+    hdrp_u32 i; /* [0,65535] below 2^bits_i */
+};
+HDRP_TYPEDEF(hdrp_pack_float_uint_pair)
+
+/* Bits left for the float; 0 where the integer takes all. */
+HDRP_FN hdrp_u32 hdrp_i_pack_float_bits(hdrp_u32 bits_i, hdrp_u32 bits_target)
+{
+    return bits_i < bits_target ? bits_target - bits_i : 0u;
+}
+
+/** Code of a float and an integer in one channel.
+ *  f            any    value; limited to [0,1]
+ *  i            any    integer; bits beyond bits_i are dropped
+ *  bits_i       [0,16] width of the integer in bits, not its number of values; at most bits_target
+ *  bits_target  [1,16] width of the channel
+ *  returns      [0,65535] i << (bits_target - bits_i) | UNORM code of f
+ *  edges        NaN counts as f = 0
+ *  error        <= 0.0161291 absolute in f, 3 of 8 bits  @accuracy pack_float_uint_3_of_8
+ *  error        <= 0.0333334 absolute in f, 4 of 8 bits  @accuracy pack_float_uint_4_of_8
+ *  source       Lagarde 2018, "GBuffer helper - Packing integer and float together" */
+HDRP_FN hdrp_u32 hdrp_pack_float_uint_code(float f, hdrp_u32 i, hdrp_u32 bits_i,
+                                           hdrp_u32 bits_target)
+{
+    hdrp_u32 bits_f = hdrp_i_pack_float_bits(bits_i, bits_target);
+    return hdrp_pack_unorm_from_float(f, bits_f) | ((i << bits_f) & ((1u << bits_target) - 1u));
+}
+
+/** Float and integer of a code of hdrp_pack_float_uint_code.
+ *  code         any    bits beyond bits_target are dropped
+ *  bits_i       [0,16] as encoded
+ *  bits_target  [1,16] as encoded
+ *  returns      valid
+ *  edges        f is 0 where no bits are left for it
+ *  error        none: the integer is exact for every code, f is hdrp_pack_float_from_unorm
+ *  source       Lagarde 2018, "GBuffer helper - Packing integer and float together" */
+HDRP_FN hdrp_pack_float_uint_pair hdrp_pack_float_uint_from_code(hdrp_u32 code, hdrp_u32 bits_i,
+                                                                 hdrp_u32 bits_target)
+{
+    hdrp_pack_float_uint_pair pair;
+    hdrp_u32 bits_f = hdrp_i_pack_float_bits(bits_i, bits_target);
+    hdrp_u32 last = (1u << bits_f) - 1u;
+    pair.f = hdrp_f32_from_u32(code & last) / hdrp_f32_from_u32(last == 0u ? 1u : last);
+    pair.i = (code & ((1u << bits_target) - 1u)) >> bits_f;
+    return pair;
+}
+
+/** Target value of a float and an integer in one channel.
+ *  f            any    value; limited to [0,1]
+ *  i            any    integer; bits beyond bits_i are dropped
+ *  bits_i       [0,16] width of the integer in bits, not its number of values; at most bits_target
+ *  bits_target  [1,16] width of the UNORM render target
+ *  returns      [0,1]  what to write to the render target
+ *  edges        NaN counts as f = 0
+ *  error        none: hdrp_pack_float_uint_code, then hdrp_pack_float_from_unorm
+ *  source       Lagarde 2018, "GBuffer helper - Packing integer and float together"
+ *  note         the slides of the same author pass the number of values, 8, where this takes 3; 8
+ *               bits of 8 leave none for the float, which divides by 0 there. The post leaves f to
+ *               the hardware to round and then needs an epsilon on decoding, without which up to
+ *               half of all codes lose one in the integer; whole codes need none */
+HDRP_FN float hdrp_pack_float_uint(float f, hdrp_u32 i, hdrp_u32 bits_i, hdrp_u32 bits_target)
+{
+    return hdrp_pack_float_from_unorm(hdrp_pack_float_uint_code(f, i, bits_i, bits_target),
+                                      bits_target);
+}
+
+/** Float and integer of a target value of hdrp_pack_float_uint.
+ *  value        any    what the render target returned; limited to [0,1]
+ *  bits_i       [0,16] as encoded
+ *  bits_target  [1,16] as encoded
+ *  returns      valid
+ *  edges        NaN counts as 0
+ *  error        none: exact for every code of every split
+ *  source       Lagarde 2018, "GBuffer helper - Packing integer and float together" */
+HDRP_FN hdrp_pack_float_uint_pair hdrp_pack_float_uint_from_target(float value, hdrp_u32 bits_i,
+                                                                   hdrp_u32 bits_target)
+{
+    return hdrp_pack_float_uint_from_code(hdrp_pack_unorm_from_float(value, bits_target), bits_i,
+                                          bits_target);
+}
+
+/* >>octahedral normals
+ * The unit sphere on a square (Meyer et al. 2010), x and y quantised alike to `bits` each.
+ *
+ * SNORM codes hold the six axes exactly and spend one code of 2^bits; UNORM codes use them all and
+ * miss every axis by half a step. Both coordinates are multiples of a half in units of a code step,
+ * so that decoding is exact up to the final normalisation, and the sign of z is a comparison of
+ * integers.
+ *
+ * Encoders never change the sign of z (z = -0 counts as positive, and so does a z that decodes as
+ * 0): hdrp_basis_from_normal of a decoded normal is then close to that of the original, where else
+ * it would be mirrored for normals near the equator. Where plain rounding would cross the equator,
+ * the coordinate that loses less goes to the next code. One step is always enough, and costs
+ * nothing in the worst case, because the map is finest there: at 12 bits the error within a step of
+ * the equator is at most 0.0362 degrees for UNORM and 0.0507 for SNORM, against 0.0594 for plain
+ * rounding in the middle of a face. */
+
+/* Magnitudes of the octahedral coordinates in code steps; scale is that of coordinate 1. The
+ * division comes last: nothing here can be contracted, and codes are the same in every build. */
+HDRP_FN hdrp_v2 hdrp_i_pack_oct_project(hdrp_v3 n, float scale)
+{
+    float l1 = hdrp_abs(n.x) + hdrp_abs(n.y) + hdrp_abs(n.z);
+    float x = hdrp_abs(n.x) * scale / l1;
+    float y = hdrp_abs(n.y) * scale / l1;
+    return n.z < 0.0f ? hdrp_v2_make(scale - y, scale - x) : hdrp_v2_make(x, y);
+}
+
+/* n, or +Z where n has no direction that survives a sum of its components. */
+HDRP_FN hdrp_v3 hdrp_i_pack_oct_direction(hdrp_v3 n)
+{
+    float l1 = hdrp_abs(n.x) + hdrp_abs(n.y) + hdrp_abs(n.z);
+    if (!(l1 >= 1e-30f && l1 <= 1e30f)) {
+        return hdrp_v3_make(0.0f, 0.0f, 1.0f);
+    }
+    return n;
+}
+
+/* 1 where the code with these magnitudes has the z sign of n, else 0. A code is magnitude + offset
+ * steps from the middle; the equator is where both sum to last + offset. */
+HDRP_FN float hdrp_i_pack_oct_keeps_side(hdrp_v2 code, float n_z, float last, float offset)
+{
+    return (code.x + code.y > last - offset) == (n_z < 0.0f) ? 1.0f : 0.0f;
+}
+
+/* The magnitudes nearest to p, each in [0,last], on the side of the equator that n_z tells. */
+HDRP_FN hdrp_v2 hdrp_i_pack_oct_round(hdrp_v2 p, float n_z, float last, float offset)
+{
+    float x = hdrp_clamp(hdrp_floor(p.x + (0.5f - offset)), 0.0f, last);
+    float y = hdrp_clamp(hdrp_floor(p.y + (0.5f - offset)), 0.0f, last);
+    float crossing = 1.0f - hdrp_i_pack_oct_keeps_side(hdrp_v2_make(x, y), n_z, last, offset);
+    float move = n_z < 0.0f ? crossing : -crossing;
+    float next_x = x + move;
+    float next_y = y + move;
+    /* How far p lies on that side of the code; -2, less than any, where there is no next code. */
+    float gain_x = next_x < 0.0f || next_x > last ? -2.0f : move * (p.x - offset - x);
+    float gain_y = next_y < 0.0f || next_y > last ? -2.0f : move * (p.y - offset - y);
+    return gain_x >= gain_y ? hdrp_v2_make(next_x, y) : hdrp_v2_make(x, next_y);
+}
+
+/* The vector, of any length, at a signed point of the square. */
+HDRP_FN hdrp_v3 hdrp_i_pack_oct_unfold(hdrp_v2 p, float scale)
+{
+    float z = scale - hdrp_abs(p.x) - hdrp_abs(p.y);
+    float fold = hdrp_max(-z, 0.0f);
+    return hdrp_v3_make(p.x - hdrp_sign_not_zero(p.x) * fold, p.y - hdrp_sign_not_zero(p.y) * fold,
+                        z);
+}
+
+/* Squared sine of the angle between a code and n, times |n|^2. n.x and n.y count as positive. */
+HDRP_FN float hdrp_i_pack_oct_error(hdrp_v2 code, hdrp_v3 n, float last, float offset)
+{
+    hdrp_v2 p = hdrp_v2_make(code.x + offset, code.y + offset);
+    hdrp_v3 d = hdrp_i_pack_oct_unfold(p, last + offset);
+    hdrp_v3 c = hdrp_v3_cross(d, hdrp_v3_make(hdrp_abs(n.x), hdrp_abs(n.y), n.z));
+    return hdrp_v3_dot(c, c) / hdrp_v3_dot(d, d);
+}
+
+/* The best of the four codes around p, and of the rounded one, which has the right side for
+ * sure. */
+HDRP_FN hdrp_v2 hdrp_i_pack_oct_search(hdrp_v2 p, hdrp_v3 n, float last, float offset)
+{
+    hdrp_v2 best = hdrp_i_pack_oct_round(p, n.z, last, offset);
+    float best_error = hdrp_i_pack_oct_error(best, n, last, offset);
+    float x = hdrp_floor(p.x - offset);
+    float y = hdrp_floor(p.y - offset);
+    for (hdrp_u32 k = 0u; k < 4u; ++k) {
+        hdrp_v2 code = hdrp_v2_make(hdrp_clamp(x + hdrp_f32_from_u32(k & 1u), 0.0f, last),
+                                    hdrp_clamp(y + hdrp_f32_from_u32(k >> 1u), 0.0f, last));
+        float error = hdrp_i_pack_oct_error(code, n, last, offset);
+        if (hdrp_i_pack_oct_keeps_side(code, n.z, last, offset) > 0.0f && error < best_error) {
+            best = code;
+            best_error = error;
+        }
+    }
+    return best;
+}
+
+/* Both coordinates in two's complement. */
+HDRP_FN hdrp_u32 hdrp_i_pack_oct_snorm_code(hdrp_v2 code, hdrp_v3 n, hdrp_u32 bits)
+{
+    return hdrp_i_pack_signed_code(hdrp_u32_from_f32(code.x), n.x, bits) |
+           (hdrp_i_pack_signed_code(hdrp_u32_from_f32(code.y), n.y, bits) << bits);
+}
+
+/* Both coordinates counted from -1. */
+HDRP_FN hdrp_u32 hdrp_i_pack_oct_unorm_code(hdrp_v2 code, hdrp_v3 n, hdrp_u32 bits)
+{
+    hdrp_u32 half_range = 1u << (bits - 1u);
+    hdrp_u32 x = hdrp_u32_from_f32(code.x);
+    hdrp_u32 y = hdrp_u32_from_f32(code.y);
+    return (n.x < 0.0f ? half_range - 1u - x : half_range + x) |
+           ((n.y < 0.0f ? half_range - 1u - y : half_range + y) << bits);
+}
+
+/* The largest magnitude of a code. */
+HDRP_FN float hdrp_i_pack_oct_last(hdrp_u32 bits)
+{
+    return hdrp_f32_from_u32((1u << (bits - 1u)) - 1u);
+}
+
+/** Octahedral code of a normal, SNORM: the recommended one, in which the axes are exact.
+ *  n        any    normal of any length in [1e-30,1e30]
+ *  bits     [2,16] of each coordinate
+ *  returns  any    x in the low bits, y in the next, both in two's complement
+ *  edges    a zero, NaN or infinite n gives +Z, code 0; the sign of z survives
+ *  error    <= 0.0595 degrees at 12 bits  @accuracy pack_oct_snorm_12
+ *  error    <= 0.96 degrees at 8 bits  @accuracy pack_oct_snorm_8
+ *  error    <= 0.0038 degrees at 16 bits  @accuracy pack_oct_snorm_16
+ *  source   Meyer et al. 2010, "On Floating-Point Normal Vectors", section 3.2; Cigolle et al.
+ *           2014, "A Survey of Efficient Representations for Independent Unit Vectors", listing
+ *           1 */
+HDRP_FN hdrp_u32 hdrp_pack_oct_snorm_from_normal(hdrp_v3 n, hdrp_u32 bits)
+{
+    hdrp_v3 d = hdrp_i_pack_oct_direction(n);
+    float last = hdrp_i_pack_oct_last(bits);
+    hdrp_v2 p = hdrp_i_pack_oct_project(d, last);
+    return hdrp_i_pack_oct_snorm_code(hdrp_i_pack_oct_round(p, d.z, last, 0.0f), d, bits);
+}
+
+/** Octahedral code of a normal, SNORM, the best of the codes around it.
+ *  n        any    normal of any length in [1e-15,1e15]
+ *  bits     [2,16] of each coordinate
+ *  returns  any    as hdrp_pack_oct_snorm_from_normal
+ *  edges    a zero, NaN or infinite n gives +Z, code 0; the sign of z survives
+ *  error    <= 0.0507 degrees at 12 bits  @accuracy pack_oct_snorm_exact_12
+ *  error    <= 0.040 degrees at 12 bits, except where z is in (-1e-3,0)
+ *           @accuracy pack_oct_snorm_exact_12_away
+ *  error    <= 0.82 degrees at 8 bits  @accuracy pack_oct_snorm_exact_8
+ *  error    <= 0.0032 degrees at 16 bits  @accuracy pack_oct_snorm_exact_16
+ *  source   Cigolle et al. 2014, "A Survey of Efficient Representations for Independent Unit
+ *           Vectors", listing 4 (precise encoding)
+ *  note     codes with z = 0 are taken as positive, so that a z just below 0 has to go one step
+ *           down: UNORM, which has no such codes, is better there */
+HDRP_FN hdrp_u32 hdrp_pack_oct_snorm_from_normal_exact(hdrp_v3 n, hdrp_u32 bits)
+{
+    hdrp_v3 d = hdrp_i_pack_oct_direction(n);
+    float last = hdrp_i_pack_oct_last(bits);
+    hdrp_v2 p = hdrp_i_pack_oct_project(d, last);
+    return hdrp_i_pack_oct_snorm_code(hdrp_i_pack_oct_search(p, d, last, 0.0f), d, bits);
+}
+
+/** Unit normal of an SNORM octahedral code.
+ *  code     any    x in the low bits, y in the next, both in two's complement
+ *  bits     [2,16] of each coordinate
+ *  returns  unit   normal
+ *  edges    every code is a normal; the most negative coordinate counts as the next
+ *  error    <= 1.8e-7 absolute, per component  @accuracy pack_normal_from_oct_snorm
+ *  source   Meyer et al. 2010, "On Floating-Point Normal Vectors", section 3.2 */
+HDRP_FN hdrp_v3 hdrp_pack_normal_from_oct_snorm(hdrp_u32 code, hdrp_u32 bits)
+{
+    hdrp_v2 p = hdrp_v2_make(hdrp_i_pack_float_from_signed_code(code, bits),
+                             hdrp_i_pack_float_from_signed_code(code >> bits, bits));
+    return hdrp_v3_normalize(hdrp_i_pack_oct_unfold(p, hdrp_i_pack_oct_last(bits)));
+}
+
+/** Octahedral code of a normal, UNORM.
+ *  n        any    normal of any length in [1e-30,1e30]
+ *  bits     [2,16] of each coordinate
+ *  returns  any    x in the low bits, y in the next, both counted from -1
+ *  edges    a zero, NaN or infinite n counts as +Z, which itself is half a step off; the sign of z
+ *           survives
+ *  error    <= 0.0595 degrees at 12 bits  @accuracy pack_oct_unorm_12
+ *  error    <= 0.96 degrees at 8 bits  @accuracy pack_oct_unorm_8
+ *  error    <= 0.0038 degrees at 16 bits  @accuracy pack_oct_unorm_16
+ *  source   Meyer et al. 2010, "On Floating-Point Normal Vectors", section 3.2; Cigolle et al.
+ *           2014, "A Survey of Efficient Representations for Independent Unit Vectors", listing 1
+ *  note     truncating, as floor(u * 4095.5) does for UNORM 12, errs by up to 0.108 degrees */
+HDRP_FN hdrp_u32 hdrp_pack_oct_unorm_from_normal(hdrp_v3 n, hdrp_u32 bits)
+{
+    hdrp_v3 d = hdrp_i_pack_oct_direction(n);
+    float last = hdrp_i_pack_oct_last(bits);
+    hdrp_v2 p = hdrp_i_pack_oct_project(d, last + 0.5f);
+    return hdrp_i_pack_oct_unorm_code(hdrp_i_pack_oct_round(p, d.z, last, 0.5f), d, bits);
+}
+
+/** Octahedral code of a normal, UNORM, the best of the codes around it.
+ *  n        any    normal of any length in [1e-15,1e15]
+ *  bits     [2,16] of each coordinate
+ *  returns  any    as hdrp_pack_oct_unorm_from_normal
+ *  edges    a zero, NaN or infinite n counts as +Z; the sign of z survives
+ *  error    <= 0.040 degrees at 12 bits  @accuracy pack_oct_unorm_exact_12
+ *  error    <= 0.64 degrees at 8 bits  @accuracy pack_oct_unorm_exact_8
+ *  error    <= 0.0025 degrees at 16 bits  @accuracy pack_oct_unorm_exact_16
+ *  source   Cigolle et al. 2014, "A Survey of Efficient Representations for Independent Unit
+ *           Vectors", listing 4 (precise encoding) */
+HDRP_FN hdrp_u32 hdrp_pack_oct_unorm_from_normal_exact(hdrp_v3 n, hdrp_u32 bits)
+{
+    hdrp_v3 d = hdrp_i_pack_oct_direction(n);
+    float last = hdrp_i_pack_oct_last(bits);
+    hdrp_v2 p = hdrp_i_pack_oct_project(d, last + 0.5f);
+    return hdrp_i_pack_oct_unorm_code(hdrp_i_pack_oct_search(p, d, last, 0.5f), d, bits);
+}
+
+/** Unit normal of a UNORM octahedral code.
+ *  code     any    x in the low bits, y in the next, both counted from -1
+ *  bits     [2,16] of each coordinate
+ *  returns  unit   normal; z is never 0
+ *  edges    every code is a normal
+ *  error    <= 1.8e-7 absolute, per component  @accuracy pack_normal_from_oct_unorm
+ *  source   Meyer et al. 2010, "On Floating-Point Normal Vectors", section 3.2 */
+HDRP_FN hdrp_v3 hdrp_pack_normal_from_oct_unorm(hdrp_u32 code, hdrp_u32 bits)
+{
+    hdrp_u32 mask = (1u << bits) - 1u;
+    float scale = hdrp_i_pack_oct_last(bits) + 0.5f;
+    hdrp_v2 p = hdrp_v2_make(hdrp_f32_from_u32(code & mask) - scale,
+                             hdrp_f32_from_u32((code >> bits) & mask) - scale);
+    return hdrp_v3_normalize(hdrp_i_pack_oct_unfold(p, scale));
+}
+
+/** Target value of a 12/12 octahedral code, for the colour channels of an RGBA8 UNORM target.
+ *  code     any    24 bits: x in the low 12 bits, y in the next
+ *  returns  [0,1]  red: upper 8 bits of x; green: upper 8 bits of y; blue: lower 4 of x, then of y
+ *  edges    none
+ *  error    none: exact
+ *  source   Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
+ *           Definition Render Pipeline", GBuffer slides ("Octahedral 12/12")
+ *  note     the slides leave the order of the bits open; here red and green alone are an 8/8
+ *           code */
+HDRP_FN hdrp_v3 hdrp_pack_oct24_target(hdrp_u32 code)
+{
+    hdrp_u32 low = ((code & 15u) << 4u) | ((code >> 12u) & 15u);
+    return hdrp_v3_make(hdrp_pack_float_from_unorm((code >> 4u) & 255u, 8u),
+                        hdrp_pack_float_from_unorm((code >> 16u) & 255u, 8u),
+                        hdrp_pack_float_from_unorm(low, 8u));
+}
+
+/** The 12/12 octahedral code that hdrp_pack_oct24_target stored.
+ *  target   any    red, green and blue of the target; limited to [0,1]
+ *  returns  [0,16777215] code
+ *  edges    NaN counts as 0
+ *  error    none: exact for every code
+ *  source   see hdrp_pack_oct24_target */
+HDRP_FN hdrp_u32 hdrp_pack_oct24_from_target(hdrp_v3 target)
+{
+    hdrp_u32 low = hdrp_pack_unorm_from_float(target.z, 8u);
+    hdrp_u32 x = (hdrp_pack_unorm_from_float(target.x, 8u) << 4u) | (low >> 4u);
+    hdrp_u32 y = (hdrp_pack_unorm_from_float(target.y, 8u) << 4u) | (low & 15u);
+    return x | (y << 12u);
+}
+
+/* >>tangent frame
+ * The direction of anisotropy as an angle from the default tangent of hdrp_basis_from_normal. */
+
+/* Cosine and sine, of any common scale, of the tangent's angle in the default frame of n. */
+HDRP_FN hdrp_v2 hdrp_i_pack_tangent_direction(hdrp_v3 n, hdrp_v3 tangent)
+{
+    hdrp_basis frame = hdrp_basis_from_normal(n);
+    float x = hdrp_v3_dot(tangent, frame.tangent);
+    float y = hdrp_v3_dot(tangent, frame.bitangent);
+    float d2 = x * x + y * y;
+    if (!(d2 >= 1e-30f && d2 <= 1e30f)) {
+        return hdrp_v2_make(1.0f, 0.0f);
+    }
+    return hdrp_v2_make(x, y);
+}
+
+HDRP_FN hdrp_v3 hdrp_i_pack_tangent_at(hdrp_v3 n, float cos_angle, float sin_angle)
+{
+    hdrp_basis frame = hdrp_basis_from_normal(n);
+    return hdrp_v3_mad(hdrp_v3_scale(frame.tangent, cos_angle), frame.bitangent, sin_angle);
+}
+
+/** Angle of a tangent in the default frame, up to half a turn, in 11 bits.
+ *  n        unit   the normal that the decoder will have: decode it before, if it is packed too
+ *  tangent  any    direction; its part along n is ignored
+ *  returns  [0,2047] code: 2048 steps of half a turn
+ *  edges    a tangent along n, without direction, or whose length in the plane is outside
+ *           [1e-15,1e15] gives the default tangent, code 0
+ *  error    <= 0.0440 degrees, up to the sign of the tangent  @accuracy pack_angle11
+ *  source   derived: half a turn is enough, because anisotropic GGX is the same for t and -t
+ *  note     twice the resolution of hdrp_pack_angle11_from_tangent_fast at the cost of an arc
+ *           tangent here and of a sine and cosine in the decoder */
+HDRP_FN hdrp_u32 hdrp_pack_angle11_from_tangent(hdrp_v3 n, hdrp_v3 tangent)
+{
+    hdrp_v2 d = hdrp_i_pack_tangent_direction(n, tangent);
+    float steps = hdrp_atan2(d.y, d.x) * (2048.0f / HDRP_PI);
+    /* Steps count modulo 2048, and two turns of them keep a coarse arc tangent above 0. */
+    return hdrp_u32_from_f32(steps + 4096.5f) & 2047u;
+}
+
+/** Tangent of a code of hdrp_pack_angle11_from_tangent.
+ *  n        unit   normal
+ *  code     any    the low 11 bits are used
+ *  returns  unit   tangent, orthogonal to n; the encoder's or its opposite
+ *  edges    code 0 is the default tangent
+ *  error    <= 4e-7 absolute, per component  @accuracy pack_tangent_from_angle11
+ *  source   see hdrp_pack_angle11_from_tangent
+ *  note     the bitangent is cross(n, tangent) of this tangent; the slides cross the normal with
+ *           the default one and so lose the rotation */
+HDRP_FN hdrp_v3 hdrp_pack_tangent_from_angle11(hdrp_v3 n, hdrp_u32 code)
+{
+    float angle_rad = hdrp_f32_from_u32(code & 2047u) * (HDRP_PI / 2048.0f);
+    return hdrp_i_pack_tangent_at(n, hdrp_cos(angle_rad), hdrp_sin(angle_rad));
+}
+
+/** Angle of a tangent in the default frame, over the whole turn, in 8 + 3 bits.
+ *  n        unit   the normal that the decoder will have: decode it before, if it is packed too
+ *  tangent  any    direction; its part along n is ignored
+ *  returns  [0,2047] code: the smaller of |sin| and |cos| in the upper 8 bits, then 4 where that is
+ *           the sine, 2 where the cosine is negative, 1 where the sine is negative
+ *  edges    as hdrp_pack_angle11_from_tangent
+ *  error    <= 0.1125 degrees  @accuracy pack_angle11_fast
+ *  source   Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
+ *           Definition Render Pipeline", slide "GBuffer Design - Anisotropy" */
+HDRP_FN hdrp_u32 hdrp_pack_angle11_from_tangent_fast(hdrp_v3 n, hdrp_v3 tangent)
+{
+    hdrp_v2 d = hdrp_i_pack_tangent_direction(n, tangent);
+    float x = hdrp_abs(d.x);
+    float y = hdrp_abs(d.y);
+    float smaller = hdrp_min(x, y) / hdrp_sqrt(x * x + y * y);
+    return (hdrp_pack_unorm_from_float(smaller * HDRP_SQRT_2, 8u) << 3u) | (y < x ? 4u : 0u) |
+           (d.x < 0.0f ? 2u : 0u) | (d.y < 0.0f ? 1u : 0u);
+}
+
+/** Tangent of a code of hdrp_pack_angle11_from_tangent_fast.
+ *  n        unit   normal
+ *  code     any    the low 11 bits are used
+ *  returns  unit   tangent, orthogonal to n
+ *  edges    every code is a tangent
+ *  error    <= 3e-7 absolute, per component  @accuracy pack_tangent_from_angle11_fast
+ *  source   see hdrp_pack_angle11_from_tangent_fast */
+HDRP_FN hdrp_v3 hdrp_pack_tangent_from_angle11_fast(hdrp_v3 n, hdrp_u32 code)
+{
+    float smaller = hdrp_pack_float_from_unorm((code >> 3u) & 255u, 8u) * HDRP_SQRT_HALF;
+    float larger = hdrp_sqrt(1.0f - smaller * smaller);
+    float sin_angle = (code & 4u) != 0u ? smaller : larger;
+    float cos_angle = (code & 4u) != 0u ? larger : smaller;
+    return hdrp_i_pack_tangent_at(n, (code & 2u) != 0u ? -cos_angle : cos_angle,
+                                  (code & 1u) != 0u ? -sin_angle : sin_angle);
+}
+
+#endif /* HDRP_PACK_H */
