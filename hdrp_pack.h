@@ -1,7 +1,11 @@
-/* hdrp_pack.h - bit-level codecs and octahedral normals.
+/* hdrp_pack.h - bit-level codecs, octahedral normals, and the GBuffer.
  * SPDX-License-Identifier: MIT
  *
  * See hdrp_math.h for the languages, the conventions and the override macros.
+ *
+ *     hdrp_pack_gbuffer g = hdrp_pack_gbuffer_encode(material, extra);   what a shader writes
+ *     hdrp_pack_gbuffer_texel t = hdrp_pack_gbuffer_texel_from_targets(g); what memory then holds
+ *     hdrp_brdf_data d = hdrp_pack_gbuffer_decode(hdrp_pack_gbuffer_targets_from_texel(t), 0u);
  *
  * A codec comes in up to two forms. A *code* is the integer that memory holds. A *target value* is
  * the float that a fragment shader writes so that the hardware stores that code; for a UNORM render
@@ -27,6 +31,10 @@
  *       oct24_from_target
  *   tangent frame: angle11_from_tangent tangent_from_angle11 angle11_from_tangent_fast
  *       tangent_from_angle11_fast
+ *   normal buffer: normal_buffer_encode normal_buffer_decode
+ *   SSS buffer: sss_buffer_encode sss_buffer_decode
+ *   GBuffer: gbuffer_features gbuffer_texel_features gbuffer_losses gbuffer_supports gbuffer_encode
+ *       gbuffer_decode gbuffer_decode_extra gbuffer_texel_from_targets gbuffer_targets_from_texel
  * >>end */
 #ifndef HDRP_PACK_H
 #define HDRP_PACK_H
@@ -780,6 +788,550 @@ HDRP_FN hdrp_v3 hdrp_pack_tangent_from_angle11_fast(hdrp_v3 n, hdrp_u32 code)
     float cos_angle = (code & 4u) != 0u ? larger : smaller;
     return hdrp_i_pack_tangent_at(n, (code & 2u) != 0u ? -cos_angle : cos_angle,
                                   (code & 1u) != 0u ? -sin_angle : sin_angle);
+}
+
+/* >>normal buffer
+ * RT1 of the GBuffer, which a forward prepass writes in the same encoding, so that screen-space
+ * passes need not know which path a pixel takes. */
+
+struct hdrp_pack_normal_pair {
+    hdrp_v3 normal;             /* unit */
+    float perceptual_roughness; /* [0,1] */
+};
+HDRP_TYPEDEF(hdrp_pack_normal_pair)
+
+/* RT1 of a 12/12 code. */
+HDRP_FN hdrp_v4 hdrp_i_pack_normal_buffer(hdrp_u32 code, float perceptual_roughness)
+{
+    return hdrp_v4_from_v3(hdrp_pack_oct24_target(code),
+                           hdrp_saturate(1.0f - perceptual_roughness));
+}
+
+/** Target value of the normal buffer, RGBA8 UNORM.
+ *  normal                any    any length in [1e-30,1e30]
+ *  perceptual_roughness  any    limited to [0,1]
+ *  returns               [0,1]  the SNORM 12/12 octahedral code and the perceptual smoothness
+ *  edges                 a normal without direction gives +Z, a NaN roughness 1; the sign of z
+ *                        survives
+ *  error                 <= 0.0595 degrees in the normal  @accuracy pack_normal_buffer_normal
+ *  error                 <= 0.00196082 absolute in the roughness  @accuracy
+ *                        pack_normal_buffer_roughness
+ *  source                Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's
+ *                        High Definition Render Pipeline", GBuffer slides
+ *  note                  half a step of smoothness changes alpha by 4 % at perceptual roughness
+ *                        0.1, by 14 % at 0.03, and by up to 43 % at 0.01 */
+HDRP_FN hdrp_v4 hdrp_pack_normal_buffer_encode(hdrp_v3 normal, float perceptual_roughness)
+{
+    return hdrp_i_pack_normal_buffer(hdrp_pack_oct_snorm_from_normal(normal, 12u),
+                                     perceptual_roughness);
+}
+
+/** Normal and roughness of the normal buffer.
+ *  rt1      any    what the target returned; limited to [0,1]
+ *  returns  valid
+ *  edges    NaN counts as 0
+ *  error    none: hdrp_pack_oct24_from_target, then hdrp_pack_normal_from_oct_snorm
+ *  source   see hdrp_pack_normal_buffer_encode */
+HDRP_FN hdrp_pack_normal_pair hdrp_pack_normal_buffer_decode(hdrp_v4 rt1)
+{
+    hdrp_pack_normal_pair pair;
+    pair.normal =
+        hdrp_pack_normal_from_oct_snorm(hdrp_pack_oct24_from_target(hdrp_v3_from_v4(rt1)), 12u);
+    pair.perceptual_roughness = 1.0f - hdrp_saturate(rt1.w);
+    return pair;
+}
+
+/* >>SSS buffer
+ * RT0 of the GBuffer for materials with subsurface scattering, which a forward pass writes in the
+ * same encoding: all that the screen-space filter needs. */
+
+struct hdrp_pack_sss {
+    hdrp_v3 diffuse_color;      /* [0,1] linear Rec.709 */
+    hdrp_u32 diffusion_profile; /* [0,15] */
+    float subsurface_mask;      /* [0,1] */
+};
+HDRP_TYPEDEF(hdrp_pack_sss)
+
+/** Target value of the SSS buffer, RGBA8 sRGB.
+ *  s        any    NaN and out-of-range values are limited; of the profile 4 bits are kept
+ *  returns  [0,1]  linear colour, which the hardware encodes; profile (4) and mask (4) in alpha
+ *  edges    NaN gives 0
+ *  error    <= 0.0333334 absolute in the mask  @accuracy pack_sss_mask
+ *  source   Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
+ *           Definition Render Pipeline", slide "GBuffer Design - Subsurface scattering" */
+HDRP_FN hdrp_v4 hdrp_pack_sss_buffer_encode(hdrp_pack_sss s)
+{
+    return hdrp_v4_from_v3(hdrp_v3_saturate(s.diffuse_color),
+                           hdrp_pack_float_uint(s.subsurface_mask, s.diffusion_profile, 4u, 8u));
+}
+
+/** Colour, profile and mask of the SSS buffer.
+ *  rt0      any    what the target returned; limited to [0,1]
+ *  returns  valid
+ *  edges    NaN counts as 0
+ *  error    none: a selection, and hdrp_pack_float_uint_from_target
+ *  source   see hdrp_pack_sss_buffer_encode */
+HDRP_FN hdrp_pack_sss hdrp_pack_sss_buffer_decode(hdrp_v4 rt0)
+{
+    hdrp_pack_sss s;
+    hdrp_pack_float_uint_pair pair = hdrp_pack_float_uint_from_target(rt0.w, 4u, 8u);
+    s.diffuse_color = hdrp_v3_saturate(hdrp_v3_from_v4(rt0));
+    s.diffusion_profile = pair.i;
+    s.subsurface_mask = pair.f;
+    return s;
+}
+
+/* >>GBuffer
+ * Four render targets of 32 bits and two optional ones. RT0 to RT2 by variant:
+ *
+ *                  R               G              B                       A
+ * RT0 RGBA8 sRGB   diffuse or base colour                                 specular occlusion
+ * RT1 RGBA8        normal, SNORM octahedral 12/12                         perceptual smoothness
+ * RT2 RGBA8        by variant                                             variant(3) coat mask(5)
+ *   Standard       F0 on the sRGB curve
+ *   Anisotropy     anisotropy      angle, high 8  angle, low 3, metallic(5)
+ *   Iridescence    d low, IOR(7)   d, high 8      film mask(3) metallic(5)
+ *   SSS or Transm. spec. occlusion thickness      profile(4) mask(4)
+ * RT3 R11G11B10F   light that leaves the surface: emissive and static diffuse
+ * RT4 RGBA8        extra specular occlusion data  ambient occlusion       light layers
+ * RT5 RGBA8        four shadow masks
+ *
+ * With SSS or transmission RT0 is the SSS buffer: profile and mask take the place of the specular
+ * occlusion, and are stored in RT2 again, so that lighting can do without RT0 until its end.
+ *
+ * RT0 holds the diffuse colour in the Standard and SSS variants, the base colour in the others.
+ * Anisotropy is an offset-binary SNORM with an exact 0. The film IOR is (ior - 1) / 2 in 7 bits,
+ * and d is sqrt(nm / 3000) of the film thickness in 9: the square root makes steps finer where
+ * fringes have more contrast, and the bit is worth more there. The stored thickness is that of the
+ * stored IOR, so that the optical path stays the same. hdrp_brdf_film of films of 100 to 800 nm
+ * is off by 0.0026 (root of the mean square), against 0.0046 for 8 and 8 bits.
+ *
+ * What no layout stores, and what decoding gives instead: coat roughness
+ * (HDRP_BRDF_COAT_PERCEPTUAL_ROUGHNESS), coat normal (the normal), refraction (none, IOR 1.5),
+ * transmittance (0: it follows from profile and thickness). Except in Standard, F0 is that of base
+ * colour and metallic over HDRP_PACK_GBUFFER_FRESNEL0; SSS has metallic 0. Standard does not keep
+ * base colour and metallic: it gives the diffuse colour and 0. See hdrp_pack_gbuffer_losses. */
+
+/* Version of the layouts; a shader and a tool that disagree must not share texels. */
+#define HDRP_PACK_GBUFFER_VERSION 1u
+
+/* Variant field of RT2.a. 0 to 3 combine HDRP_BRDF_FEATURE_SUBSURFACE and _TRANSMISSION. 6 and 7
+ * are free, and decode as Standard. */
+#define HDRP_PACK_GBUFFER_STANDARD    0u
+#define HDRP_PACK_GBUFFER_ANISOTROPY  4u
+#define HDRP_PACK_GBUFFER_IRIDESCENCE 5u
+
+/* Optional targets, or-ed. */
+#define HDRP_PACK_GBUFFER_RT4 16u
+#define HDRP_PACK_GBUFFER_RT5 32u
+
+/* F0 of a dielectric in the variants that do not store it: IOR 1.5. */
+#define HDRP_PACK_GBUFFER_FRESNEL0 0.04f
+/* Largest number that all three channels of R11G11B10F hold. */
+#define HDRP_PACK_R11G11B10F_MAX 64512.0f
+/* Thickest film, as in hdrp_brdf_data. */
+#define HDRP_PACK_GBUFFER_FILM_MAX_NM 3000.0f
+
+/* What a material would lose, or-ed; see hdrp_pack_gbuffer_losses. */
+#define HDRP_PACK_GBUFFER_LOSS_FEATURE        1u  /* more than one exclusive feature */
+#define HDRP_PACK_GBUFFER_LOSS_REFRACTION     2u  /* refraction is forward only */
+#define HDRP_PACK_GBUFFER_LOSS_COAT_NORMAL    4u  /* the coat has a normal of its own */
+#define HDRP_PACK_GBUFFER_LOSS_COAT_ROUGHNESS 8u  /* the coat has a roughness of its own */
+#define HDRP_PACK_GBUFFER_LOSS_COLOR          16u /* colours that the variant cannot express */
+
+/* What a fragment shader writes, and what a texture fetch returns. RT0 is linear; the hardware
+ * encodes it. */
+struct hdrp_pack_gbuffer {
+    hdrp_v4 rt0; /* [0,1] */
+    hdrp_v4 rt1; /* [0,1] */
+    hdrp_v4 rt2; /* [0,1] */
+    hdrp_v3 rt3; /* [0,HDRP_PACK_R11G11B10F_MAX] */
+    hdrp_v4 rt4; /* [0,1] */
+    hdrp_v4 rt5; /* [0,1] */
+};
+HDRP_TYPEDEF(hdrp_pack_gbuffer)
+
+/* What memory holds. */
+struct hdrp_pack_gbuffer_texel {
+    hdrp_u32 rt0; /* VK_FORMAT_R8G8B8A8_SRGB */
+    hdrp_u32 rt1; /* VK_FORMAT_R8G8B8A8_UNORM */
+    hdrp_u32 rt2; /* VK_FORMAT_R8G8B8A8_UNORM */
+    hdrp_u32 rt3; /* VK_FORMAT_B10G11R11_UFLOAT_PACK32 */
+    hdrp_u32 rt4; /* VK_FORMAT_R8G8B8A8_UNORM */
+    hdrp_u32 rt5; /* VK_FORMAT_R8G8B8A8_UNORM */
+};
+HDRP_TYPEDEF(hdrp_pack_gbuffer_texel)
+
+/* What a GBuffer stores beside the material. */
+struct hdrp_pack_gbuffer_extra {
+    hdrp_v3 emissive;                /* [0,inf) luminance, pre-exposed */
+    hdrp_v3 static_diffuse;          /* [0,inf) luminance of baked light, pre-exposed */
+    hdrp_v2 specular_occlusion_data; /* [0,1] the caller's, for example a bent normal; RT4 */
+    hdrp_u32 light_layers;           /* [0,255] mask; RT4 */
+    hdrp_v4 shadow_masks;            /* [0,1] RT5 */
+    hdrp_u32 targets;                /* HDRP_PACK_GBUFFER_RT4, _RT5: which of them exist */
+};
+HDRP_TYPEDEF(hdrp_pack_gbuffer_extra)
+
+#ifndef HDRP_GPU
+/* The sizes that tools and captures rely on. */
+typedef char hdrp_i_pack_gbuffer_is_92_bytes[sizeof(hdrp_pack_gbuffer) == 92 ? 1 : -1];
+typedef char hdrp_i_pack_gbuffer_texel_is_24_bytes[sizeof(hdrp_pack_gbuffer_texel) == 24 ? 1 : -1];
+#endif
+
+/* The variant that stores these features. Where several exclusive ones are set, subsurface and
+ * transmission go first, then anisotropy. */
+HDRP_FN hdrp_u32 hdrp_i_pack_gbuffer_variant(hdrp_u32 features)
+{
+    hdrp_u32 sss = features & (HDRP_BRDF_FEATURE_SUBSURFACE | HDRP_BRDF_FEATURE_TRANSMISSION);
+    hdrp_u32 film = (features & HDRP_BRDF_FEATURE_IRIDESCENCE) != 0u ? HDRP_PACK_GBUFFER_IRIDESCENCE
+                                                                     : HDRP_PACK_GBUFFER_STANDARD;
+    hdrp_u32 other =
+        (features & HDRP_BRDF_FEATURE_ANISOTROPY) != 0u ? HDRP_PACK_GBUFFER_ANISOTROPY : film;
+    return sss != 0u ? sss : other;
+}
+
+/* Features of a decoded RT2.a. */
+HDRP_FN hdrp_u32 hdrp_i_pack_gbuffer_features(hdrp_u32 rt2_alpha)
+{
+    hdrp_u32 variant = rt2_alpha >> 5u;
+    hdrp_u32 film = variant == HDRP_PACK_GBUFFER_IRIDESCENCE ? HDRP_BRDF_FEATURE_IRIDESCENCE : 0u;
+    hdrp_u32 other = variant == HDRP_PACK_GBUFFER_ANISOTROPY ? HDRP_BRDF_FEATURE_ANISOTROPY : film;
+    return (variant < HDRP_PACK_GBUFFER_ANISOTROPY ? variant : other) |
+           ((rt2_alpha & 31u) != 0u ? HDRP_BRDF_FEATURE_CLEAR_COAT : 0u);
+}
+
+/** Features of a GBuffer texel: all that material classification reads.
+ *  rt2      any    what the target returned
+ *  returns  [0,31] HDRP_BRDF_FEATURE_... mask
+ *  edges    NaN counts as 0; the free variants have no feature; a coat mask that rounded to 0 is
+ *           none
+ *  error    none: exact
+ *  source   Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
+ *           Definition Render Pipeline", GBuffer slides */
+HDRP_FN hdrp_u32 hdrp_pack_gbuffer_features(hdrp_v4 rt2)
+{
+    return hdrp_i_pack_gbuffer_features(hdrp_pack_unorm_from_float(rt2.w, 8u));
+}
+
+/** hdrp_pack_gbuffer_features of the texel in memory.
+ *  rt2      any    texel of RT2
+ *  returns  [0,31] HDRP_BRDF_FEATURE_... mask
+ *  edges    the free variants have no feature
+ *  error    none: exact
+ *  source   see hdrp_pack_gbuffer_features */
+HDRP_FN hdrp_u32 hdrp_pack_gbuffer_texel_features(hdrp_u32 rt2)
+{
+    return hdrp_i_pack_gbuffer_features(rt2 >> 24u);
+}
+
+/* 1 where any component of a and b differs by more than tolerance, else 0. */
+HDRP_FN hdrp_u32 hdrp_i_pack_differs(hdrp_v3 a, hdrp_v3 b, float tolerance)
+{
+    hdrp_v3 d = hdrp_v3_sub(a, b);
+    float e = hdrp_max(hdrp_max(hdrp_abs(d.x), hdrp_abs(d.y)), hdrp_abs(d.z));
+    return e <= tolerance ? 0u : 1u;
+}
+
+/** What a material loses in the GBuffer beyond the resolution of its codes.
+ *  d        valid  engine data
+ *  returns  [0,31] HDRP_PACK_GBUFFER_LOSS_... mask
+ *  edges    fields whose feature is not set do not count
+ *  error    none: comparisons
+ *  source   Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
+ *           Definition Render Pipeline", "Exclusive Material features due to storage space"
+ *  note     transmittance is not counted: it follows from profile and thickness */
+HDRP_FN hdrp_u32 hdrp_pack_gbuffer_losses(hdrp_brdf_data d)
+{
+    hdrp_u32 variant = hdrp_i_pack_gbuffer_variant(d.features);
+    hdrp_u32 stored = hdrp_i_pack_gbuffer_features(variant << 5u);
+    hdrp_u32 exclusive = HDRP_BRDF_FEATURE_SUBSURFACE | HDRP_BRDF_FEATURE_TRANSMISSION |
+                         HDRP_BRDF_FEATURE_ANISOTROPY | HDRP_BRDF_FEATURE_IRIDESCENCE;
+    hdrp_u32 coat = (d.features & HDRP_BRDF_FEATURE_CLEAR_COAT) != 0u ? 1u : 0u;
+    float metallic = variant < HDRP_PACK_GBUFFER_ANISOTROPY ? 0.0f : d.metallic;
+    hdrp_v3 base = variant < HDRP_PACK_GBUFFER_ANISOTROPY ? d.diffuse_color : d.base_color;
+    hdrp_v3 f0 = hdrp_brdf_fresnel0(base, metallic, hdrp_v3_splat(HDRP_PACK_GBUFFER_FRESNEL0));
+    /* 2e-3 is half a code of 8 bits, 1e-3 radians the error of the normal. */
+    hdrp_u32 color =
+        hdrp_i_pack_differs(d.fresnel0, f0, 2e-3f) |
+        hdrp_i_pack_differs(d.diffuse_color, hdrp_brdf_diffuse_color(base, metallic), 2e-3f);
+    hdrp_u32 coat_normal = hdrp_i_pack_differs(d.coat_normal, d.normal, 1e-3f);
+    float coat_roughness = d.coat_perceptual_roughness - HDRP_BRDF_COAT_PERCEPTUAL_ROUGHNESS;
+    return ((d.features & exclusive) != stored ? HDRP_PACK_GBUFFER_LOSS_FEATURE : 0u) |
+           ((d.features & HDRP_BRDF_FEATURE_REFRACTION) != 0u ? HDRP_PACK_GBUFFER_LOSS_REFRACTION
+                                                              : 0u) |
+           coat * coat_normal * HDRP_PACK_GBUFFER_LOSS_COAT_NORMAL |
+           (hdrp_abs(coat_roughness) > 2e-3f ? coat * HDRP_PACK_GBUFFER_LOSS_COAT_ROUGHNESS : 0u) |
+           (variant == HDRP_PACK_GBUFFER_STANDARD ? 0u : color * HDRP_PACK_GBUFFER_LOSS_COLOR);
+}
+
+/** Whether the GBuffer stores a material up to the resolution of its codes.
+ *  d        valid  engine data
+ *  returns  [0,1]  1 where hdrp_pack_gbuffer_losses is 0: deferred; else it should be drawn forward
+ *  edges    as hdrp_pack_gbuffer_losses
+ *  error    none: a comparison
+ *  source   see hdrp_pack_gbuffer_losses */
+HDRP_FN hdrp_u32 hdrp_pack_gbuffer_supports(hdrp_brdf_data d)
+{
+    return hdrp_pack_gbuffer_losses(d) == 0u ? 1u : 0u;
+}
+
+/* Every component limited to what R11G11B10F holds; 0 where it is NaN. */
+HDRP_FN hdrp_v3 hdrp_i_pack_gbuffer_light(hdrp_v3 v)
+{
+    return hdrp_v3_make(hdrp_clamp(v.x, 0.0f, HDRP_PACK_R11G11B10F_MAX),
+                        hdrp_clamp(v.y, 0.0f, HDRP_PACK_R11G11B10F_MAX),
+                        hdrp_clamp(v.z, 0.0f, HDRP_PACK_R11G11B10F_MAX));
+}
+
+/* RT0 in linear values. */
+HDRP_FN hdrp_v4 hdrp_i_pack_gbuffer_rt0(hdrp_brdf_data d, hdrp_u32 variant)
+{
+    hdrp_pack_sss s;
+    hdrp_v3 color = d.base_color;
+    if (variant == HDRP_PACK_GBUFFER_STANDARD) {
+        color = d.diffuse_color;
+    } else if (variant < HDRP_PACK_GBUFFER_ANISOTROPY) {
+        s.diffuse_color = d.diffuse_color;
+        s.diffusion_profile = d.diffusion_profile;
+        /* Without the feature nothing may be blurred, and the SSS pass reads nothing but RT0. */
+        s.subsurface_mask =
+            (variant & HDRP_BRDF_FEATURE_SUBSURFACE) != 0u ? d.subsurface_mask : 0.0f;
+        return hdrp_pack_sss_buffer_encode(s);
+    }
+    return hdrp_v4_from_v3(hdrp_v3_saturate(color), hdrp_saturate(d.specular_occlusion));
+}
+
+/* RT2 without alpha of the iridescence variant. The thickness makes up for the rounding of the IOR:
+ * what fringes depend on is their product. */
+HDRP_FN hdrp_v3 hdrp_i_pack_gbuffer_rt2_film(hdrp_brdf_data d)
+{
+    float ior = hdrp_clamp(d.film_ior, 1.0f, 3.0f);
+    float ior_code = hdrp_pack_unorm_target(ior * 0.5f - 0.5f, 7u);
+    float thickness_nm = d.film_thickness_nm * ior / (1.0f + 2.0f * ior_code);
+    float root = hdrp_sqrt(hdrp_saturate(thickness_nm / HDRP_PACK_GBUFFER_FILM_MAX_NM));
+    hdrp_u32 bits = hdrp_pack_unorm_from_float(root, 9u);
+    hdrp_u32 mask = hdrp_pack_unorm_from_float(d.film_mask, 3u);
+    return hdrp_v3_make(hdrp_pack_float_uint(ior_code, bits & 1u, 1u, 8u),
+                        hdrp_pack_float_from_unorm(bits >> 1u, 8u),
+                        hdrp_pack_float_uint(d.metallic, mask, 3u, 8u));
+}
+
+/* RT2 without alpha; n is the normal that the decoder will have. rt0 is encoded already. */
+HDRP_FN hdrp_v3 hdrp_i_pack_gbuffer_rt2(hdrp_brdf_data d, hdrp_u32 variant, hdrp_v3 n, hdrp_v4 rt0)
+{
+    hdrp_u32 bits;
+    if (variant == HDRP_PACK_GBUFFER_ANISOTROPY) {
+        bits = hdrp_pack_angle11_from_tangent(n, d.tangent);
+        return hdrp_v3_make(hdrp_pack_biased_snorm_target(d.anisotropy, 8u),
+                            hdrp_pack_float_from_unorm(bits >> 3u, 8u),
+                            hdrp_pack_float_uint(d.metallic, bits & 7u, 3u, 8u));
+    }
+    if (variant == HDRP_PACK_GBUFFER_IRIDESCENCE) {
+        return hdrp_i_pack_gbuffer_rt2_film(d);
+    }
+    if (variant == HDRP_PACK_GBUFFER_STANDARD) {
+        return hdrp_v3_srgb_from_linear_fast(d.fresnel0);
+    }
+    return hdrp_v3_make(hdrp_saturate(d.specular_occlusion), hdrp_saturate(d.thickness), rt0.w);
+}
+
+/** Target values of a material and what goes with it.
+ *  d        any    engine data; NaN and out-of-range values are limited
+ *  e        any    emissive and baked light, masks, and which optional targets exist
+ *  returns  valid
+ *  edges    a normal or tangent without direction gives a default, NaN the lower bound of its field
+ *           and roughness 1; bits beyond a field's are dropped. Of several exclusive features
+ *           subsurface and transmission win, then anisotropy. Targets that do not exist are 0
+ *  error    <= 0.0595 degrees in the normal, every variant  @accuracy pack_gbuffer_normal
+ *  error    <= 0.075 degrees in the tangent, up to its sign  @accuracy pack_gbuffer_tangent
+ *  error    <= 0.0019611 absolute in colours, as sRGB codes in [0,1]  @accuracy pack_gbuffer_color
+ *  error    <= 0.0022 absolute in F0, likewise  @accuracy pack_gbuffer_fresnel0
+ *  error    <= 0.0161291 absolute in metallic and coat mask  @accuracy pack_gbuffer_5_bits
+ *  error    <= 0.00393702 absolute in anisotropy  @accuracy pack_gbuffer_anisotropy
+ *  error    <= 0.0078742 absolute in film IOR  @accuracy pack_gbuffer_film_ior
+ *  error    <= 23.8 absolute in film IOR times thickness, nm  @accuracy pack_gbuffer_film_path
+ *  source   Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
+ *           Definition Render Pipeline", GBuffer slides
+ *  note     without RT4 there is no place for the ambient occlusion: baked light is multiplied by
+ *           it here (the slide says "if no RT5", its erratum RT4), so that screen-space occlusion
+ *           darkens it twice. With RT4 whoever applies it to RT3 also darkens the emissive part */
+HDRP_FN hdrp_pack_gbuffer hdrp_pack_gbuffer_encode(hdrp_brdf_data d, hdrp_pack_gbuffer_extra e)
+{
+    hdrp_pack_gbuffer g;
+    hdrp_u32 variant = hdrp_i_pack_gbuffer_variant(d.features);
+    hdrp_u32 normal = hdrp_pack_oct_snorm_from_normal(d.normal, 12u);
+    float coat = (d.features & HDRP_BRDF_FEATURE_CLEAR_COAT) != 0u ? d.coat_mask : 0.0f;
+    float ambient_occlusion = hdrp_saturate(d.ambient_occlusion);
+    float layers = hdrp_pack_float_from_unorm(e.light_layers & 255u, 8u);
+    float baked_occlusion = ambient_occlusion;
+    g.rt0 = hdrp_i_pack_gbuffer_rt0(d, variant);
+    g.rt1 = hdrp_i_pack_normal_buffer(normal, d.perceptual_roughness);
+    g.rt2 = hdrp_v4_from_v3(
+        hdrp_i_pack_gbuffer_rt2(d, variant, hdrp_pack_normal_from_oct_snorm(normal, 12u), g.rt0),
+        hdrp_pack_float_uint(coat, variant, 3u, 8u));
+    g.rt4 = hdrp_v4_make(0.0f, 0.0f, 0.0f, 0.0f);
+    g.rt5 = g.rt4;
+    if ((e.targets & HDRP_PACK_GBUFFER_RT4) != 0u) {
+        g.rt4 = hdrp_v4_make(hdrp_saturate(e.specular_occlusion_data.x),
+                             hdrp_saturate(e.specular_occlusion_data.y), ambient_occlusion, layers);
+        baked_occlusion = 1.0f;
+    }
+    if ((e.targets & HDRP_PACK_GBUFFER_RT5) != 0u) {
+        g.rt5 = hdrp_v4_make(hdrp_saturate(e.shadow_masks.x), hdrp_saturate(e.shadow_masks.y),
+                             hdrp_saturate(e.shadow_masks.z), hdrp_saturate(e.shadow_masks.w));
+    }
+    g.rt3 = hdrp_i_pack_gbuffer_light(hdrp_v3_mad(hdrp_i_pack_gbuffer_light(e.emissive),
+                                                  hdrp_i_pack_gbuffer_light(e.static_diffuse),
+                                                  baked_occlusion));
+    return g;
+}
+
+/* Adds what the anisotropy and iridescence variants store. */
+HDRP_FN hdrp_brdf_data hdrp_i_pack_gbuffer_decode_metallic(hdrp_brdf_data d, hdrp_v4 rt2,
+                                                           hdrp_u32 variant)
+{
+    hdrp_pack_float_uint_pair pair = hdrp_pack_float_uint_from_target(rt2.z, 3u, 8u);
+    hdrp_pack_float_uint_pair film;
+    hdrp_u32 angle;
+    float thickness;
+    d.metallic = pair.f;
+    d.diffuse_color = hdrp_brdf_diffuse_color(d.base_color, d.metallic);
+    d.fresnel0 =
+        hdrp_brdf_fresnel0(d.base_color, d.metallic, hdrp_v3_splat(HDRP_PACK_GBUFFER_FRESNEL0));
+    if (variant == HDRP_PACK_GBUFFER_ANISOTROPY) {
+        d.anisotropy = hdrp_pack_float_from_biased_snorm_target(rt2.x, 8u);
+        angle = (hdrp_pack_unorm_from_float(rt2.y, 8u) << 3u) | pair.i;
+        d.tangent = hdrp_pack_tangent_from_angle11(d.normal, angle);
+        d.bitangent = hdrp_v3_cross(d.normal, d.tangent);
+    } else {
+        film = hdrp_pack_float_uint_from_target(rt2.x, 1u, 8u);
+        thickness =
+            hdrp_pack_float_from_unorm((hdrp_pack_unorm_from_float(rt2.y, 8u) << 1u) | film.i, 9u);
+        d.film_ior = 1.0f + 2.0f * film.f;
+        d.film_thickness_nm = thickness * thickness * HDRP_PACK_GBUFFER_FILM_MAX_NM;
+        d.film_mask = hdrp_pack_float_from_unorm(pair.i, 3u);
+    }
+    return d;
+}
+
+/* Adds what the SSS and transmission variants store. */
+HDRP_FN hdrp_brdf_data hdrp_i_pack_gbuffer_decode_sss(hdrp_brdf_data d, hdrp_v4 rt2)
+{
+    hdrp_pack_float_uint_pair pair = hdrp_pack_float_uint_from_target(rt2.z, 4u, 8u);
+    d.fresnel0 = hdrp_v3_splat(HDRP_PACK_GBUFFER_FRESNEL0);
+    d.specular_occlusion = hdrp_saturate(rt2.x);
+    d.thickness = hdrp_saturate(rt2.y);
+    d.diffusion_profile = pair.i;
+    d.subsurface_mask = pair.f;
+    return d;
+}
+
+/** Engine data of target values.
+ *  g        any    what the targets returned; limited to their ranges
+ *  targets  any    HDRP_PACK_GBUFFER_RT4, _RT5: which optional targets exist
+ *  returns  valid
+ *  edges    NaN counts as 0; fields that the variant does not store get the defaults listed above
+ *  error    none: see hdrp_pack_gbuffer_encode
+ *  source   Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
+ *           Definition Render Pipeline", GBuffer slides
+ *  note     a caller whose diffusion profiles have an F0 or a transmittance sets them afterwards */
+HDRP_FN hdrp_brdf_data hdrp_pack_gbuffer_decode(hdrp_pack_gbuffer g, hdrp_u32 targets)
+{
+    hdrp_brdf_data d = hdrp_brdf_data_from_surface(hdrp_brdf_surface_default());
+    hdrp_pack_normal_pair rt1 = hdrp_pack_normal_buffer_decode(g.rt1);
+    hdrp_pack_float_uint_pair rt2 = hdrp_pack_float_uint_from_target(g.rt2.w, 3u, 8u);
+    hdrp_basis frame = hdrp_basis_from_normal(rt1.normal);
+    d.features = hdrp_pack_gbuffer_features(g.rt2);
+    d.diffuse_color = hdrp_v3_saturate(hdrp_v3_from_v4(g.rt0));
+    d.base_color = d.diffuse_color;
+    d.specular_occlusion = hdrp_saturate(g.rt0.w);
+    d.normal = rt1.normal;
+    d.perceptual_roughness = rt1.perceptual_roughness;
+    d.tangent = frame.tangent;
+    d.bitangent = frame.bitangent;
+    d.coat_normal = rt1.normal;
+    d.coat_mask = rt2.f;
+    if ((targets & HDRP_PACK_GBUFFER_RT4) != 0u) {
+        d.ambient_occlusion = hdrp_saturate(g.rt4.z);
+    }
+    if (rt2.i == HDRP_PACK_GBUFFER_ANISOTROPY || rt2.i == HDRP_PACK_GBUFFER_IRIDESCENCE) {
+        return hdrp_i_pack_gbuffer_decode_metallic(d, g.rt2, rt2.i);
+    }
+    if (rt2.i != HDRP_PACK_GBUFFER_STANDARD && rt2.i < HDRP_PACK_GBUFFER_ANISOTROPY) {
+        return hdrp_i_pack_gbuffer_decode_sss(d, g.rt2);
+    }
+    d.fresnel0 = hdrp_v3_linear_from_srgb_fast(hdrp_v3_from_v4(g.rt2));
+    return d;
+}
+
+/** What target values hold beside the material.
+ *  g        any    what the targets returned; limited to their ranges
+ *  targets  any    HDRP_PACK_GBUFFER_RT4, _RT5: which optional targets exist
+ *  returns  valid: all of RT3 as static_diffuse, and the fields of the targets that exist; the rest
+ *           is 0, except light_layers and shadow_masks, which are all ones
+ *  edges    NaN counts as 0, infinity as 64512
+ *  error    none: exact for every code
+ *  source   see hdrp_pack_gbuffer_decode */
+HDRP_FN hdrp_pack_gbuffer_extra hdrp_pack_gbuffer_decode_extra(hdrp_pack_gbuffer g,
+                                                               hdrp_u32 targets)
+{
+    hdrp_pack_gbuffer_extra e;
+    e.targets = targets & (HDRP_PACK_GBUFFER_RT4 | HDRP_PACK_GBUFFER_RT5);
+    e.emissive = hdrp_v3_splat(0.0f);
+    e.static_diffuse = hdrp_i_pack_gbuffer_light(g.rt3);
+    e.specular_occlusion_data = hdrp_v2_make(0.0f, 0.0f);
+    e.light_layers = 255u;
+    e.shadow_masks = hdrp_v4_make(1.0f, 1.0f, 1.0f, 1.0f);
+    if ((targets & HDRP_PACK_GBUFFER_RT4) != 0u) {
+        e.specular_occlusion_data = hdrp_v2_make(hdrp_saturate(g.rt4.x), hdrp_saturate(g.rt4.y));
+        e.light_layers = hdrp_pack_unorm_from_float(g.rt4.w, 8u);
+    }
+    if ((targets & HDRP_PACK_GBUFFER_RT5) != 0u) {
+        e.shadow_masks = hdrp_v4_make(hdrp_saturate(g.rt5.x), hdrp_saturate(g.rt5.y),
+                                      hdrp_saturate(g.rt5.z), hdrp_saturate(g.rt5.w));
+    }
+    return e;
+}
+
+/** What memory holds after a shader wrote target values.
+ *  g        any    target values
+ *  returns  any    one texel per target
+ *  edges    NaN is stored as 0 in RT0 to RT2, RT4 and RT5, and as NaN in RT3
+ *  error    none: hdrp_pack_srgba8_from_linear, hdrp_pack_rgba8_from_v4 and
+ *           hdrp_pack_r11g11b10f_from_rgb
+ *  source   Vulkan specification, "Fixed-Point Data Conversions"
+ *  note     a device may round RT3 towards 0 and differ by one code where a value lies between
+ *           two */
+HDRP_FN hdrp_pack_gbuffer_texel hdrp_pack_gbuffer_texel_from_targets(hdrp_pack_gbuffer g)
+{
+    hdrp_pack_gbuffer_texel t;
+    t.rt0 = hdrp_pack_srgba8_from_linear(g.rt0);
+    t.rt1 = hdrp_pack_rgba8_from_v4(g.rt1);
+    t.rt2 = hdrp_pack_rgba8_from_v4(g.rt2);
+    t.rt3 = hdrp_pack_r11g11b10f_from_rgb(g.rt3);
+    t.rt4 = hdrp_pack_rgba8_from_v4(g.rt4);
+    t.rt5 = hdrp_pack_rgba8_from_v4(g.rt5);
+    return t;
+}
+
+/** What a texture fetch returns for texels in memory.
+ *  t        any    one texel per target
+ *  returns  any    target values, in [0,1] but for RT3
+ *  edges    infinity and NaN in RT3 are returned; decoding limits them
+ *  error    none: hdrp_pack_linear_from_srgba8, hdrp_pack_v4_from_rgba8 and
+ *           hdrp_pack_rgb_from_r11g11b10f
+ *  source   Vulkan specification, "Fixed-Point Data Conversions" */
+HDRP_FN hdrp_pack_gbuffer hdrp_pack_gbuffer_targets_from_texel(hdrp_pack_gbuffer_texel t)
+{
+    hdrp_pack_gbuffer g;
+    g.rt0 = hdrp_pack_linear_from_srgba8(t.rt0);
+    g.rt1 = hdrp_pack_v4_from_rgba8(t.rt1);
+    g.rt2 = hdrp_pack_v4_from_rgba8(t.rt2);
+    g.rt3 = hdrp_pack_rgb_from_r11g11b10f(t.rt3);
+    g.rt4 = hdrp_pack_v4_from_rgba8(t.rt4);
+    g.rt5 = hdrp_pack_v4_from_rgba8(t.rt5);
+    return g;
 }
 
 #endif /* HDRP_PACK_H */

@@ -467,6 +467,185 @@ static void tangent_from_angle11_fast_error(acc* a)
     }
 }
 
+static void normal_buffer_normal_error(acc* a)
+{
+    for (int i = 0; i < 200000; ++i) {
+        hdrp_v3 n = hard_normal(a, i, 2047.0);
+        double reference[3] = {(double)n.x, (double)n.y, (double)n.z};
+        hdrp_u32 texel = hdrp_pack_rgba8_from_v4(hdrp_pack_normal_buffer_encode(n, 0.5f));
+        hdrp_v3 m = hdrp_pack_normal_buffer_decode(hdrp_pack_v4_from_rgba8(texel)).normal;
+        ACC_ADD(a, (m.z < 0.0f) == (n.z < 0.0f) ? degrees(m, reference) : HUGE_VAL,
+                "n = (%.9g, %.9g, %.9g)", (double)n.x, (double)n.y, (double)n.z);
+    }
+}
+
+static void normal_buffer_roughness_error(acc* a)
+{
+    hdrp_v3 up = hdrp_v3_make(0.0f, 0.0f, 1.0f);
+    for (int i = 0; i < 100000; ++i) {
+        float r = (float)(i % 2 ? acc_uniform(a, 0.0, 1.0) : ((double)(i % 510) + 0.5) / 510.0);
+        hdrp_u32 texel = hdrp_pack_rgba8_from_v4(hdrp_pack_normal_buffer_encode(up, r));
+        double decoded = (double)hdrp_pack_normal_buffer_decode(hdrp_pack_v4_from_rgba8(texel))
+                             .perceptual_roughness;
+        ACC_ADD(a, fabs(decoded - (double)r), "roughness %.9g", (double)r);
+    }
+}
+
+static void sss_mask_error(acc* a)
+{
+    for (int i = 0; i < 100000; ++i) {
+        hdrp_pack_sss s;
+        s.diffuse_color = hdrp_v3_splat(0.25f);
+        s.diffusion_profile = (hdrp_u32)i & 15u;
+        s.subsurface_mask = (float)acc_uniform(a, 0.0, 1.0);
+        hdrp_u32 texel = hdrp_pack_srgba8_from_linear(hdrp_pack_sss_buffer_encode(s));
+        hdrp_pack_sss m = hdrp_pack_sss_buffer_decode(hdrp_pack_linear_from_srgba8(texel));
+        double error = fabs((double)m.subsurface_mask - (double)s.subsurface_mask);
+        ACC_ADD(a, m.diffusion_profile == s.diffusion_profile ? error : HUGE_VAL, "mask %.9g",
+                (double)s.subsurface_mask);
+    }
+}
+
+static hdrp_v3 random_color(acc* a)
+{
+    return hdrp_v3_make((float)acc_uniform(a, 0.0, 1.0), (float)acc_uniform(a, 0.0, 1.0),
+                        (float)acc_uniform(a, 0.0, 1.0));
+}
+
+/* A random valid material of the given feature. */
+static hdrp_brdf_data random_material(acc* a, int i, hdrp_u32 features)
+{
+    hdrp_brdf_surface s = hdrp_brdf_surface_default();
+    double t[3];
+    s.base_color = random_color(a);
+    s.metallic = (float)acc_uniform(a, 0.0, 1.0);
+    s.normal = hard_normal(a, i, 2047.0);
+    random_tangent(a, s.normal, t);
+    s.tangent = hdrp_v3_make((float)t[0], (float)t[1], (float)t[2]);
+    s.anisotropy = (float)acc_uniform(a, -1.0, 1.0);
+    s.coat_mask = (float)acc_uniform(a, 0.0, 1.0);
+    s.film_ior = (float)acc_uniform(a, 1.0, 3.0);
+    s.film_thickness_nm = (float)acc_uniform(a, 0.0, 3000.0);
+    s.features = features | HDRP_BRDF_FEATURE_CLEAR_COAT;
+    return hdrp_brdf_data_from_surface(s);
+}
+
+static hdrp_brdf_data through_texels(hdrp_brdf_data d)
+{
+    hdrp_pack_gbuffer_extra e;
+    e.emissive = e.static_diffuse = hdrp_v3_splat(0.0f);
+    e.specular_occlusion_data = hdrp_v2_make(0.0f, 0.0f);
+    e.light_layers = 0u;
+    e.shadow_masks = hdrp_v4_make(0.0f, 0.0f, 0.0f, 0.0f);
+    e.targets = 0u;
+    hdrp_pack_gbuffer_texel t =
+        hdrp_pack_gbuffer_texel_from_targets(hdrp_pack_gbuffer_encode(d, e));
+    return hdrp_pack_gbuffer_decode(hdrp_pack_gbuffer_targets_from_texel(t), 0u);
+}
+
+static void gbuffer_normal_error(acc* a)
+{
+    for (int i = 0; i < 60000; ++i) {
+        hdrp_u32 feature = 1u << (hdrp_u32)(i % 4);
+        hdrp_brdf_data d = random_material(a, i / 4, i % 5 == 4 ? 0u : feature);
+        double reference[3] = {(double)d.normal.x, (double)d.normal.y, (double)d.normal.z};
+        hdrp_v3 n = through_texels(d).normal;
+        ACC_ADD(a, (n.z < 0.0f) == (d.normal.z < 0.0f) ? degrees(n, reference) : HUGE_VAL,
+                "n = (%.9g, %.9g, %.9g)", reference[0], reference[1], reference[2]);
+    }
+}
+
+static void gbuffer_tangent_error(acc* a)
+{
+    for (int i = 0; i < 100000; ++i) {
+        hdrp_brdf_data d = random_material(a, i, HDRP_BRDF_FEATURE_ANISOTROPY);
+        double reference[3] = {(double)d.tangent.x, (double)d.tangent.y, (double)d.tangent.z};
+        ACC_ADD(a, unsigned_degrees(through_texels(d).tangent, reference), "n = (%.9g, %.9g, %.9g)",
+                (double)d.normal.x, (double)d.normal.y, (double)d.normal.z);
+    }
+}
+
+static double srgb_difference(hdrp_v3 a, hdrp_v3 b)
+{
+    double x[3] = {(double)a.x, (double)a.y, (double)a.z},
+           y[3] = {(double)b.x, (double)b.y, (double)b.z};
+    double worst = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        double ex = x[i] <= 0.0031308 ? 12.92 * x[i] : 1.055 * pow(x[i], 1.0 / 2.4) - 0.055;
+        double ey = y[i] <= 0.0031308 ? 12.92 * y[i] : 1.055 * pow(y[i], 1.0 / 2.4) - 0.055;
+        worst = fmax(worst, fabs(ex - ey));
+    }
+    return worst;
+}
+
+static void gbuffer_color_error(acc* a)
+{
+    for (int i = 0; i < 20000; ++i) {
+        hdrp_brdf_data d = random_material(a, i, 0u);
+        ACC_ADD(a, srgb_difference(d.diffuse_color, through_texels(d).diffuse_color),
+                "diffuse colour");
+        d = random_material(a, i, HDRP_BRDF_FEATURE_ANISOTROPY);
+        ACC_ADD(a, srgb_difference(d.base_color, through_texels(d).base_color), "base colour");
+    }
+}
+
+static void gbuffer_fresnel0_error(acc* a)
+{
+    for (int i = 0; i < 60000; ++i) {
+        hdrp_brdf_data d = random_material(a, i, 0u);
+        ACC_ADD(a, srgb_difference(d.fresnel0, through_texels(d).fresnel0), "(%.9g, %.9g, %.9g)",
+                (double)d.fresnel0.x, (double)d.fresnel0.y, (double)d.fresnel0.z);
+    }
+}
+
+static void gbuffer_5_bits_error(acc* a)
+{
+    for (int i = 0; i < 40000; ++i) {
+        hdrp_brdf_data d = random_material(
+            a, i, i % 2 ? HDRP_BRDF_FEATURE_ANISOTROPY : HDRP_BRDF_FEATURE_IRIDESCENCE);
+        hdrp_brdf_data m = through_texels(d);
+        ACC_ADD(a, fabs((double)m.metallic - (double)d.metallic), "metallic %.9g",
+                (double)d.metallic);
+        ACC_ADD(a, fabs((double)m.coat_mask - (double)d.coat_mask), "coat mask %.9g",
+                (double)d.coat_mask);
+    }
+}
+
+static void gbuffer_film_ior_error(acc* a)
+{
+    for (int i = 0; i < 40000; ++i) {
+        hdrp_brdf_data d = random_material(a, i, HDRP_BRDF_FEATURE_IRIDESCENCE);
+        ACC_ADD(a, fabs((double)through_texels(d).film_ior - (double)d.film_ior), "film IOR %.9g",
+                (double)d.film_ior);
+    }
+}
+
+static void gbuffer_anisotropy_error(acc* a)
+{
+    for (int i = 0; i < 40000; ++i) {
+        hdrp_brdf_data d = random_material(a, i, HDRP_BRDF_FEATURE_ANISOTROPY);
+        ACC_ADD(a, fabs((double)through_texels(d).anisotropy - (double)d.anisotropy),
+                "anisotropy %.9g", (double)d.anisotropy);
+    }
+}
+
+/* The product, which the phase of the fringes depends on; worst where the stored thickness would
+ * have to exceed its maximum. */
+static void gbuffer_film_path_error(acc* a)
+{
+    for (int i = 0; i < 100000; ++i) {
+        hdrp_brdf_data d = random_material(a, i, HDRP_BRDF_FEATURE_IRIDESCENCE);
+        if (i % 4 == 0) {
+            d.film_thickness_nm = 3000.0f;
+        }
+        hdrp_brdf_data m = through_texels(d);
+        ACC_ADD(a,
+                fabs((double)m.film_thickness_nm * (double)m.film_ior -
+                     (double)d.film_thickness_nm * (double)d.film_ior),
+                "%.9g nm, IOR %.9g", (double)d.film_thickness_nm, (double)d.film_ior);
+    }
+}
+
 const acc_entry acc_pack[] = {
     {"pack_unorm_codes", unorm_codes_error},
     {"pack_float_from_unorm", float_from_unorm_error},
@@ -500,5 +679,16 @@ const acc_entry acc_pack[] = {
     {"pack_angle11_fast", angle11_fast_error},
     {"pack_tangent_from_angle11", tangent_from_angle11_error},
     {"pack_tangent_from_angle11_fast", tangent_from_angle11_fast_error},
+    {"pack_normal_buffer_normal", normal_buffer_normal_error},
+    {"pack_normal_buffer_roughness", normal_buffer_roughness_error},
+    {"pack_sss_mask", sss_mask_error},
+    {"pack_gbuffer_normal", gbuffer_normal_error},
+    {"pack_gbuffer_tangent", gbuffer_tangent_error},
+    {"pack_gbuffer_color", gbuffer_color_error},
+    {"pack_gbuffer_fresnel0", gbuffer_fresnel0_error},
+    {"pack_gbuffer_5_bits", gbuffer_5_bits_error},
+    {"pack_gbuffer_anisotropy", gbuffer_anisotropy_error},
+    {"pack_gbuffer_film_ior", gbuffer_film_ior_error},
+    {"pack_gbuffer_film_path", gbuffer_film_path_error},
     {NULL, NULL},
 };
