@@ -61,7 +61,9 @@ static void check_size(png_structp png, png_infop info, size_t file_size)
     }
 }
 
-/* Everything that libpng may jump out of. What it allocates hangs on its arguments. */
+/* Not libpng's simplified interface: it changes samples by the gamma that a file claims, which glTF
+ * says to ignore. Everything that libpng may jump out of is here; what it allocates hangs on its
+ * arguments. */
 static bool decode(png_structp png, png_infop info, source* s, rd_image_u8* image)
 {
     size_t size = s->left;
@@ -107,52 +109,23 @@ bool rd_image_decode_png(rd_image_u8* image, const unsigned char* bytes, size_t 
     return true;
 }
 
-static bool encode(png_structp png, png_infop info, FILE* file, int width, int height,
-                   const unsigned char* rgb)
-{
-    if (setjmp(png_jmpbuf(png))) {
-        return false;
-    }
-    png_init_io(png, file);
-    png_set_IHDR(png, info, (png_uint_32)width, (png_uint_32)height, 8, PNG_COLOR_TYPE_RGB,
-                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
-    /* Half the time of the defaults for 5 % more bytes. */
-    png_set_compression_level(png, 4);
-    png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB | PNG_FILTER_UP);
-    png_write_info(png, info);
-    for (int y = 0; y < height; ++y) {
-        png_write_row(png, rgb + (size_t)y * (size_t)width * 3);
-    }
-    png_write_end(png, NULL);
-    return true;
-}
-
-static bool write_file(const char* path, int width, int height, const unsigned char* rgb, source* s)
-{
-    FILE* file = fopen(path, "wb");
-    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, s, on_error, on_warning);
-    png_infop info = png ? png_create_info_struct(png) : NULL;
-    bool ok = file && info && encode(png, info, file, width, height, rgb);
-    png_destroy_write_struct(png ? &png : NULL, info ? &info : NULL);
-    if (file && fclose(file) != 0) {
-        ok = false;
-    }
-    return ok;
-}
-
 bool rd_image_write_png(const char* path, int width, int height, const unsigned char* rgb,
                         rd_report* report)
 {
-    source s = {NULL, 0, "cannot write the PNG file"};
+    png_image image;
     rd_output out;
-    bool ok;
+    memset(&image, 0, sizeof image);
+    image.version = PNG_IMAGE_VERSION;
+    image.width = (png_uint_32)width;
+    image.height = (png_uint_32)height;
+    image.format = PNG_FORMAT_RGB;
+    /* A sixth of the time of the defaults for a quarter more bytes. */
+    image.flags = PNG_IMAGE_FLAG_FAST;
     if (!rd_output_begin(&out, path, report)) {
         return false;
     }
-    ok = write_file(out.temporary, width, height, rgb, &s);
-    if (!ok) {
-        rd_fail(report, path, "%s", s.why);
+    if (!png_image_write_to_file(&image, out.temporary, 0, rgb, 0, NULL)) {
+        rd_fail(report, path, "PNG: %s", image.message);
     }
-    return rd_output_end(&out, ok, report);
+    return rd_output_end(&out, !PNG_IMAGE_FAILED(image), report);
 }
