@@ -51,28 +51,6 @@ bool rd_file_read(const char* path, unsigned char** bytes, size_t* size, rd_repo
     return true;
 }
 
-char* rd_path_directory(const char* path)
-{
-    const char* slash = strrchr(path, '/');
-    size_t n = slash ? (size_t)(slash - path) + 1 : 0;
-    char* out = (char*)malloc(n + 1);
-    if (out) {
-        memcpy(out, path, n);
-        out[n] = '\0';
-    }
-    return out;
-}
-
-char* rd_path_join(const char* directory, const char* name)
-{
-    size_t n = strlen(directory) + strlen(name) + 1;
-    char* out = (char*)malloc(n);
-    if (out) {
-        snprintf(out, n, "%s%s", directory, name);
-    }
-    return out;
-}
-
 bool rd_path_has_extension(const char* path, const char* extension)
 {
     const char* dot = strrchr(path, '.');

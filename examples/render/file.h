@@ -19,9 +19,6 @@ bool rd_file_size(const char* path, uint64_t* size);
 /* Reads a regular file of at most RD_FILE_MAX bytes; the caller frees *bytes. */
 bool rd_file_read(const char* path, unsigned char** bytes, size_t* size, rd_report* report);
 
-/* "dir/" of "dir/name", "" where there is none, both freed by the caller. NULL: out of memory. */
-char* rd_path_directory(const char* path);
-char* rd_path_join(const char* directory, const char* name);
 /* The part after the last dot in lower case is `extension`, which is given without the dot. */
 bool rd_path_has_extension(const char* path, const char* extension);
 

@@ -3,11 +3,13 @@
 
 #include "file.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <new>
 
 namespace rd
 {
@@ -22,51 +24,34 @@ namespace
 
 using tinygltf::Model;
 using tinygltf::Node;
-using tinygltf::Value;
 
 /* >>files: tinygltf asks for the files that a model names */
 
-bool file_exists(const std::string& path, void*)
+bool file_exists(const std::string& name, void* user)
 {
-    uint64_t size;
-    return rd_file_size(path.c_str(), &size);
+    return static_cast<const gltf_file*>(user)->externals.count(name) > 0;
 }
 
-std::string expand_path(const std::string& path, void*)
+std::string expand_path(const std::string& name, void*)
 {
-    return path;
+    return name;
 }
 
-/* A buffer's file may be longer than the buffer, which tinygltf does not accept: cuts it. */
-size_t wanted_size(const rd_gltf_file* file, const std::string& path, size_t size)
-{
-    const rd_json* buffers = rd_json_get(file->document.root, "buffers");
-    for (const rd_json* b = buffers ? buffers->first : nullptr; b; b = b->next) {
-        const rd_json* uri = rd_json_get(b, "uri");
-        char* name = uri ? rd_gltf_uri_path(file, uri->string) : nullptr;
-        const bool same = name && path == name;
-        std::free(name);
-        if (same) {
-            return size_t(rd_json_number(b, "byteLength", 0));
-        }
-    }
-    return size;
-}
-
-bool read_file(std::vector<unsigned char>* out, std::string* error, const std::string& path,
+/* Only what the check has seen. A buffer's file may be longer than the buffer, which tinygltf does
+ * not accept: cuts it. */
+bool read_file(std::vector<unsigned char>* out, std::string* error, const std::string& name,
                void* user)
 {
-    const rd_gltf_file* file = static_cast<const rd_gltf_file*>(user);
+    const external_file& file = static_cast<const gltf_file*>(user)->externals.at(name);
     rd_report report;
     unsigned char* bytes = nullptr;
     size_t size = 0;
     report.failed = false;
-    if (!rd_file_read(path.c_str(), &bytes, &size, &report)) {
+    if (!rd_file_read(file.path.c_str(), &bytes, &size, &report)) {
         *error += report.error;
         return false;
     }
-    const size_t wanted = wanted_size(file, path, size);
-    out->assign(bytes, bytes + (wanted < size ? wanted : size));
+    out->assign(bytes, bytes + std::min(size, file.size));
     std::free(bytes);
     return true;
 }
@@ -83,37 +68,19 @@ bool keep_image(tinygltf::Image* image, const int, std::string*, std::string*, i
     return true;
 }
 
-/* A GLB whose binary chunk is empty or absent, in the form that tinygltf accepts. */
-std::vector<unsigned char> without_bin(const rd_gltf_file* file)
-{
-    const size_t end = 20 + file->json_size;
-    std::vector<unsigned char> bytes(file->bytes, file->bytes + end);
-    for (size_t i = 0; i < 4; ++i) {
-        bytes[8 + i] = static_cast<unsigned char>(end >> (8 * i));
-    }
-    return bytes;
-}
-
-bool parse(const rd_gltf_file* file, Model* model, std::string* error)
+/* tinygltf parses the text once more: it takes no tree, and our check needs one. A GLB without
+ * binary data is read as its text, for tinygltf does not accept an empty chunk. */
+bool parse(const gltf_file& file, Model* model, std::string* error)
 {
     tinygltf::TinyGLTF loader;
     std::string warning;
-    tinygltf::FsCallbacks callbacks = {file_exists, expand_path, read_file, nullptr,
-                                       const_cast<rd_gltf_file*>(file)};
-    loader.SetFsCallbacks(callbacks);
+    loader.SetFsCallbacks(
+        {file_exists, expand_path, read_file, nullptr, const_cast<gltf_file*>(&file)});
     loader.SetImageLoader(keep_image, nullptr);
-    const std::string directory = file->directory;
-    if (!file->is_binary) {
-        return loader.LoadASCIIFromString(model, error, &warning, file->json,
-                                          unsigned(file->json_size), directory);
-    }
-    if (file->bin_size > 0) {
-        return loader.LoadBinaryFromMemory(model, error, &warning, file->bytes,
-                                           unsigned(file->size), directory);
-    }
-    const std::vector<unsigned char> bytes = without_bin(file);
-    return loader.LoadBinaryFromMemory(model, error, &warning, bytes.data(), unsigned(bytes.size()),
-                                       directory);
+    return file.bin.empty() ? loader.LoadASCIIFromString(model, error, &warning, file.text.data(),
+                                                         unsigned(file.text.size()), file.directory)
+                            : loader.LoadBinaryFromMemory(model, error, &warning, file.bytes.get(),
+                                                          unsigned(file.size), file.directory);
 }
 
 /* >>scene graph */
@@ -276,30 +243,20 @@ void warn_of_ignored(const importer& in)
     }
 }
 
-bool import_model(const rd_gltf_file* file, rd_scene* scene, rd_report* report)
+bool import_model(const gltf_file& file, rd_scene* scene, rd_report* report)
 {
     Model model;
     std::string error;
-    const importer in = {file, &model, scene, report};
+    const importer in = {&file, &model, scene, report};
     if (!parse(file, &model, &error)) {
-        return rd_fail(report, file->path, "%s", error.empty() ? "cannot be read" : error.c_str());
+        throw refusal(error.empty() ? "cannot be read" : error);
     }
     if (!import_materials(in) || !import_nodes(in)) {
         return false;
     }
     warn_of_ignored(in);
+    rd_scene_update_bounds(scene);
     return true;
-}
-
-bool guarded_import(const rd_gltf_file* file, rd_scene* scene, rd_report* report)
-{
-    try {
-        return import_model(file, scene, report);
-    } catch (const std::exception& e) {
-        return rd_fail(report, file->path, "%s", e.what());
-    } catch (...) {
-        return rd_fail(report, file->path, "unknown failure of the glTF library");
-    }
 }
 
 } // namespace
@@ -307,13 +264,16 @@ bool guarded_import(const rd_gltf_file* file, rd_scene* scene, rd_report* report
 
 bool rd_scene_load_gltf(rd_scene* scene, const char* path, rd_report* report)
 {
-    rd_gltf_file file;
     std::memset(scene, 0, sizeof *scene);
-    const bool ok = rd_gltf_file_open(&file, path, report) && rd_gltf_validate(&file, report) &&
-                    rd::guarded_import(&file, scene, report);
-    rd_gltf_file_close(&file);
-    if (ok) {
-        rd_scene_update_bounds(scene);
+    try {
+        rd::gltf_file file = rd::open_gltf(path, report);
+        rd::check_gltf(file);
+        return rd::import_model(file, scene, report);
+    } catch (const std::bad_alloc&) {
+        return rd_fail(report, path, "out of memory");
+    } catch (const std::exception& e) {
+        return rd_fail(report, path, "%s", e.what());
+    } catch (...) {
+        return rd_fail(report, path, "unknown failure of a library");
     }
-    return ok;
 }

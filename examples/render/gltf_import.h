@@ -1,5 +1,5 @@
 /* Between the C++ files that read a glTF model through tinygltf. Everything here runs after
- * rd_gltf_validate: types, references and memory extents are known to be right. */
+ * check_gltf: types, references and memory extents are known to be right. */
 #ifndef RD_GLTF_IMPORT_H
 #define RD_GLTF_IMPORT_H
 
@@ -15,7 +15,7 @@ namespace rd
 {
 
 struct importer {
-    const rd_gltf_file* file;
+    const gltf_file* file;
     const tinygltf::Model* model;
     rd_scene* scene;
     rd_report* report;

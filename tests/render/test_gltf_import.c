@@ -273,7 +273,105 @@ static void a_buffer_may_be_the_beginning_of_a_longer_file(void** state)
     remove("test gltf import.bin");
 }
 
+static void file_names_may_contain_a_plus_sign(void** state)
+{
+    static const float data[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    rd_scene s;
+    FILE* bin = fopen("test+gltf.bin", "wb");
+    FILE* f = fopen(FILE_NAME, "w");
+    (void)state;
+    assert_true(bin && f && fwrite(data, sizeof data, 1, bin) == 1);
+    fprintf(f, "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":36,\"uri\":"
+               "\"test+gltf.bin\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],"
+               "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"type\":\"VEC3\","
+               "\"count\":3}]" ONE_NODE
+               ",\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]}");
+    fclose(bin);
+    fclose(f);
+    s = load();
+    assert_int_equal(s.triangle_count, 1);
+    rd_scene_free(&s);
+    remove("test+gltf.bin");
+}
+
 /* >>refusals that no file in the shared assets covers */
+
+/* A member "extras", in which everything is allowed, of `count` times the same text. */
+static void write_extras(const char* text, int count, const char* end)
+{
+    const size_t length = strlen(text);
+    char* rest = (char*)malloc(length * (size_t)count + strlen(end) + 32);
+    char* at = rest + sprintf(rest, ",\"extras\":");
+    for (int i = 0; i < count; ++i, at += length) {
+        memcpy(at, text, length);
+    }
+    strcpy(at, end);
+    write_gltf(&quad, sizeof quad, rest);
+    free(rest);
+}
+
+static void refuses_texts_that_are_deep_or_long(void** state)
+{
+    rd_scene s;
+    (void)state;
+    write_extras("[", 100000, "");
+    refuses("nested too deeply");
+    write_extras("{\"a\":", 64, "0");
+    refuses("nested too deeply");
+    write_extras("[0,", 1,
+                 "\"[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[\"]");
+    s = load();
+    rd_scene_free(&s);
+    write_extras("[0],", 1 << 21, "0");
+    refuses("too many values");
+}
+
+static void refuses_keys_that_appear_twice(void** state)
+{
+    (void)state;
+    write_gltf(&quad, sizeof quad, ",\"extras\":[{\"a\":{\"b\":1,\"c:\":2,\"b\":3}}]");
+    refuses("same key twice");
+}
+
+static void refuses_numbers_and_strings_that_c_cannot_hold(void** state)
+{
+    (void)state;
+    write_gltf(&quad, sizeof quad, ",\"extras\":1e999");
+    refuses("1e999");
+    write_gltf(&quad, sizeof quad, ",\"extras\":NaN");
+    refuses("JSON");
+    write_gltf(&quad, sizeof quad, ",\"extras\":\"a\\u0000b\"");
+    refuses("u0000");
+    write_gltf(&quad, sizeof quad, ",\"extras\":\"\xc0\xaf\"");
+    refuses("UTF-8");
+}
+
+static void refuses_indices_that_are_no_integers(void** state)
+{
+    static const char* const bad[] = {"-1", "0.0", "1e0", "\"0\"", "18446744073709551616", "true"};
+    char rest[64];
+    (void)state;
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; ++i) {
+        sprintf(rest, ",\"scenes\":[{}],\"scene\":%s", bad[i]);
+        write_gltf(&quad, sizeof quad, rest);
+        refuses("scene is not an index");
+    }
+    write_gltf(&quad, sizeof quad, ",\"scenes\":[{}],\"scene\":1");
+    refuses("scene is 1, but scenes has 1 elements");
+}
+
+static void refuses_paths_that_are_not_relative(void** state)
+{
+    (void)state;
+    write_gltf(&quad, sizeof quad, ",\"images\":[{\"uri\":\"/etc/passwd\"}]");
+    refuses("unusable URI");
+    write_gltf(&quad, sizeof quad, ",\"images\":[{\"uri\":\"%2Fetc/passwd\"}]");
+    refuses("unusable URI");
+    write_gltf(&quad, sizeof quad, ",\"images\":[{\"uri\":\"file:///etc/passwd\"}]");
+    refuses("unusable URI");
+    write_gltf(&quad, sizeof quad, ",\"images\":[{\"uri\":\"a%2\"}]");
+    refuses("unusable URI");
+}
 
 static void names_a_missing_texture(void** state)
 {
@@ -360,6 +458,12 @@ int main(void)
         cmocka_unit_test(normalized_integers_cover_zero_to_one),
         cmocka_unit_test(texture_transforms_scale_then_rotate_then_shift),
         cmocka_unit_test(a_buffer_may_be_the_beginning_of_a_longer_file),
+        cmocka_unit_test(file_names_may_contain_a_plus_sign),
+        cmocka_unit_test(refuses_texts_that_are_deep_or_long),
+        cmocka_unit_test(refuses_keys_that_appear_twice),
+        cmocka_unit_test(refuses_numbers_and_strings_that_c_cannot_hold),
+        cmocka_unit_test(refuses_indices_that_are_no_integers),
+        cmocka_unit_test(refuses_paths_that_are_not_relative),
         cmocka_unit_test(names_a_missing_texture),
         cmocka_unit_test(refuses_required_extensions_it_does_not_know),
         cmocka_unit_test(refuses_accessors_that_cost_the_file_nothing),
