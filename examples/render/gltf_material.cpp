@@ -1,6 +1,8 @@
-/* glTF materials and textures. Extensions: Khronos, "KHR_materials_*" and "KHR_texture_transform". */
+/* glTF materials and textures, from the checked document: tinygltf keeps extensions as values of its
+ * own, in which large integers are lost. Khronos, "KHR_materials_*" and "KHR_texture_transform". */
 #include "gltf_import.h"
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -10,10 +12,6 @@ namespace rd
 {
 namespace
 {
-
-using tinygltf::ExtensionMap;
-using tinygltf::Material;
-using tinygltf::Value;
 
 /* The textures made so far: glTF textures that show the same image in the same way share one. */
 struct texture_key {
@@ -33,29 +31,18 @@ struct material_importer {
     bool warned_of_sheen;
 };
 
-double number(const Value& object, const char* name, double fallback)
+/* A member, or an empty object. */
+const json& part(const json& object, const char* name)
 {
-    return object.IsObject() && object.Has(name) ? object.Get(name).GetNumberAsDouble() : fallback;
+    static const json none = json::object();
+    const auto found = object.find(name);
+    return found == object.end() ? none : *found;
 }
 
-float number_f(const Value& object, const char* name, float fallback)
+hdrp_v3 color(const json& object, const char* name, hdrp_v3 fallback)
 {
-    return float(number(object, name, double(fallback)));
-}
-
-hdrp_v3 color(const Value& object, const char* name, hdrp_v3 fallback)
-{
-    if (!object.IsObject() || !object.Has(name)) {
-        return fallback;
-    }
-    const Value& c = object.Get(name);
-    return hdrp_v3_make(float(c.Get(0).GetNumberAsDouble()), float(c.Get(1).GetNumberAsDouble()),
-                        float(c.Get(2).GetNumberAsDouble()));
-}
-
-double pair_element(const Value& object, const char* name, int i, double fallback)
-{
-    return object.Has(name) ? object.Get(name).Get(i).GetNumberAsDouble() : fallback;
+    const auto c = object.value(name, std::array<float, 3>{fallback.x, fallback.y, fallback.z});
+    return hdrp_v3_make(c[0], c[1], c[2]);
 }
 
 rd_wrap wrap_from(int mode)
@@ -85,9 +72,8 @@ void set_encoded(const importer& in, int index, rd_texture* t)
         bytes = in.model->buffers[size_t(v.buffer)].data.data() + v.byteOffset;
         size = v.byteLength;
     }
-    const std::string what = image.uri.empty() || image.uri.compare(0, 5, "data:") == 0
-                                 ? "images[" + std::to_string(index) + "]"
-                                 : image.uri;
+    const std::string what =
+        image.uri.empty() ? "images[" + std::to_string(index) + "]" : image.uri;
     t->name = copy_text(std::string(in.file->path) + ": " + what);
     t->encoded = static_cast<unsigned char*>(std::malloc(size ? size : 1));
     if (!t->name || !t->encoded) {
@@ -120,17 +106,16 @@ int add_texture(material_importer& m, const texture_key& key)
     return int(m.keys.size()) - 1;
 }
 
-void set_transform(rd_texture_slot* slot, const Value& transform)
+void set_transform(rd_texture_slot* slot, const json& transform)
 {
-    const double angle = number(transform, "rotation", 0.0);
+    using pair = std::array<double, 2>;
+    const double angle = transform.value("rotation", 0.0);
     const double c = std::cos(angle), s = std::sin(angle);
-    const double sx = pair_element(transform, "scale", 0, 1.0);
-    const double sy = pair_element(transform, "scale", 1, 1.0);
-    slot->u_row = hdrp_v3_make(float(c * sx), float(s * sy),
-                               float(pair_element(transform, "offset", 0, 0.0)));
-    slot->v_row = hdrp_v3_make(float(-s * sx), float(c * sy),
-                               float(pair_element(transform, "offset", 1, 0.0)));
-    slot->uv_set = int(number(transform, "texCoord", slot->uv_set));
+    const pair scale = transform.value("scale", pair{1.0, 1.0});
+    const pair offset = transform.value("offset", pair{0.0, 0.0});
+    slot->u_row = hdrp_v3_make(float(c * scale[0]), float(s * scale[1]), float(offset[0]));
+    slot->v_row = hdrp_v3_make(float(-s * scale[0]), float(c * scale[1]), float(offset[1]));
+    slot->uv_set = transform.value("texCoord", slot->uv_set);
 }
 
 bool is_color_slot(rd_slot slot)
@@ -138,145 +123,113 @@ bool is_color_slot(rd_slot slot)
     return slot == RD_SLOT_BASE_COLOR || slot == RD_SLOT_EMISSIVE || slot == RD_SLOT_SPECULAR_COLOR;
 }
 
-void set_slot(material_importer& m, rd_material* to, rd_slot slot, int texture, int uv_set,
-              const Value& transform)
-{
-    if (texture < 0) {
-        return;
-    }
-    const tinygltf::Texture& t = m.in->model->textures[size_t(texture)];
-    const bool is_normal = slot == RD_SLOT_NORMAL || slot == RD_SLOT_COAT_NORMAL;
-    const texture_key key = {t.source, t.sampler, is_color_slot(slot), is_normal};
-    rd_texture_slot* s = &to->slot[slot];
-    *s = rd_texture_slot_make(add_texture(m, key));
-    s->uv_set = uv_set;
-    if (transform.IsObject()) {
-        set_transform(s, transform);
-    }
-}
-
-template <class Info>
-void set_slot(material_importer& m, rd_material* to, rd_slot slot, const Info& i)
-{
-    const auto found = i.extensions.find("KHR_texture_transform");
-    set_slot(m, to, slot, i.index, i.texCoord,
-             found == i.extensions.end() ? Value() : found->second);
-}
-
-/* A texture info inside an extension, which tinygltf hands over as plain values. */
-void set_slot(material_importer& m, rd_material* to, rd_slot slot, const Value& owner,
+void set_slot(material_importer& m, rd_material* to, rd_slot slot, const json& owner,
               const char* name)
 {
-    if (!owner.Has(name)) {
+    const json& info = part(owner, name);
+    if (info.empty()) {
         return;
     }
-    const Value& i = owner.Get(name);
-    Value transform;
-    if (i.Has("extensions") && i.Get("extensions").Has("KHR_texture_transform")) {
-        transform = i.Get("extensions").Get("KHR_texture_transform");
-    }
-    set_slot(m, to, slot, int(number(i, "index", -1.0)), int(number(i, "texCoord", 0.0)),
-             transform);
+    const tinygltf::Texture& t = m.in->model->textures[info.at("index").get<size_t>()];
+    const bool is_normal = slot == RD_SLOT_NORMAL || slot == RD_SLOT_COAT_NORMAL;
+    rd_texture_slot* s = &to->slot[slot];
+    *s =
+        rd_texture_slot_make(add_texture(m, {t.source, t.sampler, is_color_slot(slot), is_normal}));
+    s->uv_set = info.value("texCoord", 0);
+    set_transform(s, part(part(info, "extensions"), "KHR_texture_transform"));
 }
 
-void read_core(material_importer& m, const Material& from, rd_material* to)
+void read_core(material_importer& m, const json& from, rd_material* to)
 {
-    const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
-    const std::vector<double>& c = pbr.baseColorFactor;
-    std::snprintf(to->name, RD_NAME_MAX, "%s", from.name.c_str());
-    to->base_color = hdrp_v3_make(float(c[0]), float(c[1]), float(c[2]));
-    to->alpha = float(c[3]);
-    to->metallic = float(pbr.metallicFactor);
-    to->perceptual_roughness = float(pbr.roughnessFactor);
-    to->normal_scale = float(from.normalTexture.scale);
-    to->occlusion_strength = float(from.occlusionTexture.strength);
-    to->double_sided = from.doubleSided;
-    to->alpha_cutoff = float(from.alphaCutoff);
-    to->alpha_mode = from.alphaMode == "MASK"    ? RD_ALPHA_MASK
-                     : from.alphaMode == "BLEND" ? RD_ALPHA_BLEND
-                                                 : RD_ALPHA_OPAQUE;
-    if (from.emissiveFactor.size() == 3) {
-        to->emission_nits =
-            hdrp_v3_make(float(from.emissiveFactor[0]), float(from.emissiveFactor[1]),
-                         float(from.emissiveFactor[2]));
-    }
-    set_slot(m, to, RD_SLOT_BASE_COLOR, pbr.baseColorTexture);
-    set_slot(m, to, RD_SLOT_METALLIC_ROUGHNESS, pbr.metallicRoughnessTexture);
-    set_slot(m, to, RD_SLOT_NORMAL, from.normalTexture);
-    set_slot(m, to, RD_SLOT_OCCLUSION, from.occlusionTexture);
-    set_slot(m, to, RD_SLOT_EMISSIVE, from.emissiveTexture);
+    const json& pbr = part(from, "pbrMetallicRoughness");
+    const auto c = pbr.value("baseColorFactor", std::array<float, 4>{1.0f, 1.0f, 1.0f, 1.0f});
+    const std::string alpha_mode = from.value("alphaMode", "OPAQUE");
+    std::snprintf(to->name, RD_NAME_MAX, "%s", from.value("name", "").c_str());
+    to->base_color = hdrp_v3_make(c[0], c[1], c[2]);
+    to->alpha = c[3];
+    to->metallic = pbr.value("metallicFactor", 1.0f);
+    to->perceptual_roughness = pbr.value("roughnessFactor", 1.0f);
+    to->normal_scale = part(from, "normalTexture").value("scale", 1.0f);
+    to->occlusion_strength = part(from, "occlusionTexture").value("strength", 1.0f);
+    to->double_sided = from.value("doubleSided", false);
+    to->alpha_cutoff = from.value("alphaCutoff", 0.5f);
+    to->alpha_mode = alpha_mode == "MASK"    ? RD_ALPHA_MASK
+                     : alpha_mode == "BLEND" ? RD_ALPHA_BLEND
+                                             : RD_ALPHA_OPAQUE;
+    to->emission_nits = color(from, "emissiveFactor", hdrp_v3_splat(0.0f));
+    set_slot(m, to, RD_SLOT_BASE_COLOR, pbr, "baseColorTexture");
+    set_slot(m, to, RD_SLOT_METALLIC_ROUGHNESS, pbr, "metallicRoughnessTexture");
+    set_slot(m, to, RD_SLOT_NORMAL, from, "normalTexture");
+    set_slot(m, to, RD_SLOT_OCCLUSION, from, "occlusionTexture");
+    set_slot(m, to, RD_SLOT_EMISSIVE, from, "emissiveTexture");
 }
 
-void read_coat(material_importer& m, const Value& e, rd_material* to)
+void read_coat(material_importer& m, const json& e, rd_material* to)
 {
-    to->coat = number_f(e, "clearcoatFactor", 0.0f);
-    to->coat_perceptual_roughness = number_f(e, "clearcoatRoughnessFactor", 0.0f);
+    to->coat = e.value("clearcoatFactor", 0.0f);
+    to->coat_perceptual_roughness = e.value("clearcoatRoughnessFactor", 0.0f);
     set_slot(m, to, RD_SLOT_COAT, e, "clearcoatTexture");
     set_slot(m, to, RD_SLOT_COAT_ROUGHNESS, e, "clearcoatRoughnessTexture");
     set_slot(m, to, RD_SLOT_COAT_NORMAL, e, "clearcoatNormalTexture");
-    if (e.Has("clearcoatNormalTexture")) {
-        to->coat_normal_scale = number_f(e.Get("clearcoatNormalTexture"), "scale", 1.0f);
-    }
+    to->coat_normal_scale = part(e, "clearcoatNormalTexture").value("scale", 1.0f);
 }
 
-void read_anisotropy(material_importer& m, const Value& e, rd_material* to)
+void read_anisotropy(material_importer& m, const json& e, rd_material* to)
 {
-    to->anisotropy = number_f(e, "anisotropyStrength", 0.0f);
-    to->anisotropy_rotation_rad = number_f(e, "anisotropyRotation", 0.0f);
+    to->anisotropy = e.value("anisotropyStrength", 0.0f);
+    to->anisotropy_rotation_rad = e.value("anisotropyRotation", 0.0f);
     set_slot(m, to, RD_SLOT_ANISOTROPY, e, "anisotropyTexture");
 }
 
-void read_iridescence(material_importer& m, const Value& e, rd_material* to)
+void read_iridescence(material_importer& m, const json& e, rd_material* to)
 {
-    to->film = number_f(e, "iridescenceFactor", 0.0f);
-    to->film_ior = number_f(e, "iridescenceIor", to->film_ior);
-    to->film_thickness_min_nm =
-        number_f(e, "iridescenceThicknessMinimum", to->film_thickness_min_nm);
-    to->film_thickness_max_nm =
-        number_f(e, "iridescenceThicknessMaximum", to->film_thickness_max_nm);
+    to->film = e.value("iridescenceFactor", 0.0f);
+    to->film_ior = e.value("iridescenceIor", to->film_ior);
+    to->film_thickness_min_nm = e.value("iridescenceThicknessMinimum", to->film_thickness_min_nm);
+    to->film_thickness_max_nm = e.value("iridescenceThicknessMaximum", to->film_thickness_max_nm);
     set_slot(m, to, RD_SLOT_FILM, e, "iridescenceTexture");
     set_slot(m, to, RD_SLOT_FILM_THICKNESS, e, "iridescenceThicknessTexture");
 }
 
-void read_specular(material_importer& m, const Value& e, rd_material* to)
+void read_specular(material_importer& m, const json& e, rd_material* to)
 {
-    to->specular = number_f(e, "specularFactor", 1.0f);
+    to->specular = e.value("specularFactor", 1.0f);
     to->specular_color = color(e, "specularColorFactor", to->specular_color);
     set_slot(m, to, RD_SLOT_SPECULAR, e, "specularTexture");
     set_slot(m, to, RD_SLOT_SPECULAR_COLOR, e, "specularColorTexture");
 }
 
-void read_transmission(material_importer& m, const Value& e, rd_material* to)
+void read_transmission(material_importer& m, const json& e, rd_material* to)
 {
-    to->transmission = number_f(e, "transmissionFactor", 0.0f);
+    to->transmission = e.value("transmissionFactor", 0.0f);
     set_slot(m, to, RD_SLOT_TRANSMISSION, e, "transmissionTexture");
 }
 
-void read_volume(material_importer& m, const Value& e, rd_material* to)
+void read_volume(material_importer& m, const json& e, rd_material* to)
 {
-    const double distance = number(e, "attenuationDistance", double(HDRP_FLT_MAX));
-    to->thickness = number_f(e, "thicknessFactor", 0.0f);
+    const double distance = e.value("attenuationDistance", double(HDRP_FLT_MAX));
+    to->thickness = e.value("thicknessFactor", 0.0f);
     to->attenuation_distance_m = float(std::fmin(distance, double(HDRP_FLT_MAX)));
     to->attenuation_color = color(e, "attenuationColor", to->attenuation_color);
     set_slot(m, to, RD_SLOT_THICKNESS, e, "thicknessTexture");
 }
 
-void read_emissive_strength(material_importer&, const Value& e, rd_material* to)
+void read_emissive_strength(material_importer&, const json& e, rd_material* to)
 {
-    to->emission_nits = hdrp_v3_scale(to->emission_nits, number_f(e, "emissiveStrength", 1.0f));
+    to->emission_nits = hdrp_v3_scale(to->emission_nits, e.value("emissiveStrength", 1.0f));
 }
 
-void read_ior(material_importer&, const Value& e, rd_material* to)
+void read_ior(material_importer&, const json& e, rd_material* to)
 {
-    to->ior = number_f(e, "ior", 1.5f);
+    to->ior = e.value("ior", 1.5f);
 }
 
-void read_unlit(material_importer&, const Value&, rd_material* to)
+void read_unlit(material_importer&, const json&, rd_material* to)
 {
     to->unlit = true;
 }
 
-void warn_of_sheen(material_importer& m, const Value&, rd_material*)
+void warn_of_sheen(material_importer& m, const json&, rd_material*)
 {
     if (!m.warned_of_sheen) {
         rd_warn(m.in->report, m.in->file->path, "KHR_materials_sheen is ignored");
@@ -286,7 +239,7 @@ void warn_of_sheen(material_importer& m, const Value&, rd_material*)
 
 const struct {
     const char* name;
-    void (*read)(material_importer&, const Value&, rd_material*);
+    void (*read)(material_importer&, const json&, rd_material*);
 } extension_readers[] = {
     {"KHR_materials_clearcoat", read_coat},
     {"KHR_materials_anisotropy", read_anisotropy},
@@ -300,14 +253,14 @@ const struct {
     {"KHR_materials_sheen", warn_of_sheen},
 };
 
-rd_material read_material(material_importer& m, const Material& from)
+rd_material read_material(material_importer& m, const json& from)
 {
     rd_material to = rd_material_default();
+    const json& extensions = part(from, "extensions");
     read_core(m, from, &to);
     for (const auto& reader : extension_readers) {
-        const auto found = from.extensions.find(reader.name);
-        if (found != from.extensions.end() && found->second.IsObject()) {
-            reader.read(m, found->second, &to);
+        if (extensions.contains(reader.name)) {
+            reader.read(m, extensions.at(reader.name), &to);
         }
     }
     rd_material_update_features(&to);
@@ -336,9 +289,9 @@ bool import_materials(const importer& in)
     material_importer m = {&in, {}, {}, false};
     const rd_material fallback = rd_material_default();
     bool ok = true;
-    for (size_t i = 0; ok && i < in.model->materials.size(); ++i) {
-        const rd_material material = read_material(m, in.model->materials[i]);
-        ok = rd_scene_add_material(in.scene, &material) >= 0;
+    for (const json& from : part(in.file->document, "materials")) {
+        const rd_material material = read_material(m, from);
+        ok = ok && rd_scene_add_material(in.scene, &material) >= 0;
     }
     ok = ok && rd_scene_add_material(in.scene, &fallback) >= 0;
     if (!ok) {

@@ -294,6 +294,19 @@ static void file_names_may_contain_a_plus_sign(void** state)
     remove("test+gltf.bin");
 }
 
+static void integers_of_extensions_may_be_large(void** state)
+{
+    rd_scene s;
+    (void)state;
+    write_gltf(&quad, sizeof quad,
+               ",\"materials\":[{\"emissiveFactor\":[1,0,1],\"extensions\":{"
+               "\"KHR_materials_emissive_strength\":{\"emissiveStrength\":4000000000}}}]");
+    s = load();
+    assert_true(s.materials[0].emission_nits.x == 4e9f);
+    assert_true(s.materials[0].emission_nits.y == 0.0f);
+    rd_scene_free(&s);
+}
+
 /* >>refusals that no file in the shared assets covers */
 
 /* A member "extras", in which everything is allowed, of `count` times the same text. */
@@ -459,6 +472,7 @@ int main(void)
         cmocka_unit_test(texture_transforms_scale_then_rotate_then_shift),
         cmocka_unit_test(a_buffer_may_be_the_beginning_of_a_longer_file),
         cmocka_unit_test(file_names_may_contain_a_plus_sign),
+        cmocka_unit_test(integers_of_extensions_may_be_large),
         cmocka_unit_test(refuses_texts_that_are_deep_or_long),
         cmocka_unit_test(refuses_keys_that_appear_twice),
         cmocka_unit_test(refuses_numbers_and_strings_that_c_cannot_hold),
