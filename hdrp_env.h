@@ -1,12 +1,11 @@
 /* hdrp_env.h - lighting by an environment: GGX prefilter, irradiance, lookup.
  * SPDX-License-Identifier: MIT
  *
- * See hdrp_math.h for the languages, the conventions and the override macros, and hdrp_hdri.h,
+ * See hdrp_math.h for the languages, the conventions and the override macros, and hdrp_env_image.h,
  * which this header includes, for images of the sphere and their calibration. The formula layer
  * reads what was baked, in C and in shaders. The algorithm layer, C and C++ only, is compiled in
  * one source file:
  *
- *     #define HDRP_HDRI_IMPLEMENTATION
  *     #define HDRP_ENV_IMPLEMENTATION
  *     #include "hdrp_env.h"
  *
@@ -22,13 +21,21 @@
  * hdrp_env_convolve_irradiance on disjoint ranges instead of hdrp_env_bake: one step after the
  * other, any split of a step, the same bits.
  *
- * The cubes are in the layout of hdrp_hdri.h, with the mip levels that a GPU samples: copy texels
- * to a cube image, let the sampler filter (seamlessly), and take the level of the specular cube
- * from hdrp_env_lod_from_perceptual_roughness. */
+ * The cubes are in the layout of hdrp_env_image.h, with the mip levels that a GPU samples: copy the
+ * texels to a cube image, let the sampler filter (seamlessly), and take the level of the specular
+ * cube from hdrp_env_lod_from_perceptual_roughness.
+ *
+ * >>index of the functions, without hdrp_env_ (written by tools/api_check.py --write)
+ *   levels of roughness: lod_from_perceptual_roughness perceptual_roughness_from_lod
+ *   spherical harmonics: irradiance_fast sh_windowed
+ *   baking: memory_size init resample reduce specular_rows prefilter convolve_irradiance bake
+ *       project_sh cube_image
+ *   lookup: cube_lookup radiance specular irradiance
+ * >>end */
 #ifndef HDRP_ENV_H
 #define HDRP_ENV_H
 
-#include "hdrp_hdri.h"
+#include "hdrp_env_image.h"
 
 #if HDRP_VERSION != 100
 #error "hdrp_env.h 0.1.0 needs the hdrp_math.h of the same version"
@@ -78,15 +85,15 @@ HDRP_FN float hdrp_env_perceptual_roughness_from_lod(float lod, hdrp_u32 level_c
 /* Irradiance as a quadratic polynomial of the normal, per channel in xyz; w is 0. The
  * coefficients include every constant. A std140 or std430 block of nine vec4 reads the same. */
 struct hdrp_env_sh {
-    hdrp_v4 constant; /* [-1e22,1e22] */
-    hdrp_v4 x;        /* [-1e22,1e22] */
-    hdrp_v4 y;        /* [-1e22,1e22] */
-    hdrp_v4 z;        /* [-1e22,1e22] */
-    hdrp_v4 xy;       /* [-1e22,1e22] */
-    hdrp_v4 yz;       /* [-1e22,1e22] */
-    hdrp_v4 xz;       /* [-1e22,1e22] */
-    hdrp_v4 zz;       /* [-1e22,1e22] of 3 z^2 - 1 */
-    hdrp_v4 xx;       /* [-1e22,1e22] of x^2 - y^2 */
+    hdrp_v4 mean; /* [-1e22,1e22] */
+    hdrp_v4 x;    /* [-1e22,1e22] */
+    hdrp_v4 y;    /* [-1e22,1e22] */
+    hdrp_v4 z;    /* [-1e22,1e22] */
+    hdrp_v4 xy;   /* [-1e22,1e22] */
+    hdrp_v4 yz;   /* [-1e22,1e22] */
+    hdrp_v4 xz;   /* [-1e22,1e22] */
+    hdrp_v4 zz;   /* [-1e22,1e22] of 3 z^2 - 1 */
+    hdrp_v4 xx;   /* [-1e22,1e22] of x^2 - y^2 */
 };
 HDRP_TYPEDEF(hdrp_env_sh)
 
@@ -102,7 +109,7 @@ HDRP_TYPEDEF(hdrp_env_sh)
  *           Maps", eq. 13 */
 HDRP_FN hdrp_v3 hdrp_env_irradiance_fast(hdrp_env_sh sh, hdrp_v3 normal)
 {
-    hdrp_v3 e = hdrp_v3_from_v4(sh.constant);
+    hdrp_v3 e = hdrp_v3_from_v4(sh.mean);
     e = hdrp_v3_mad(e, hdrp_v3_from_v4(sh.x), normal.x);
     e = hdrp_v3_mad(e, hdrp_v3_from_v4(sh.y), normal.y);
     e = hdrp_v3_mad(e, hdrp_v3_from_v4(sh.z), normal.z);
@@ -114,10 +121,10 @@ HDRP_FN hdrp_v3 hdrp_env_irradiance_fast(hdrp_env_sh sh, hdrp_v3 normal)
     return hdrp_v3_max(e, 0.0f);
 }
 
-/* v times s, all four components. */
-HDRP_FN hdrp_v4 hdrp_i_env_v4_scale(hdrp_v4 v, float s)
+/* c times s, all four components. */
+HDRP_FN hdrp_v4 hdrp_i_env_scaled(hdrp_v4 c, float s)
 {
-    return hdrp_v4_make(v.x * s, v.y * s, v.z * s, v.w * s);
+    return hdrp_v4_make(c.x * s, c.y * s, c.z * s, c.w * s);
 }
 
 /** The same spherical harmonics with less ringing: the choice with the least curvature.
@@ -134,15 +141,15 @@ HDRP_FN hdrp_env_sh hdrp_env_sh_windowed(hdrp_env_sh sh, float lambda)
     float order1 = 1.0f / (1.0f + 4.0f * lambda);
     float order2 = 1.0f / (1.0f + 36.0f * lambda);
     hdrp_env_sh r;
-    r.constant = sh.constant;
-    r.x = hdrp_i_env_v4_scale(sh.x, order1);
-    r.y = hdrp_i_env_v4_scale(sh.y, order1);
-    r.z = hdrp_i_env_v4_scale(sh.z, order1);
-    r.xy = hdrp_i_env_v4_scale(sh.xy, order2);
-    r.yz = hdrp_i_env_v4_scale(sh.yz, order2);
-    r.xz = hdrp_i_env_v4_scale(sh.xz, order2);
-    r.zz = hdrp_i_env_v4_scale(sh.zz, order2);
-    r.xx = hdrp_i_env_v4_scale(sh.xx, order2);
+    r.mean = sh.mean;
+    r.x = hdrp_i_env_scaled(sh.x, order1);
+    r.y = hdrp_i_env_scaled(sh.y, order1);
+    r.z = hdrp_i_env_scaled(sh.z, order1);
+    r.xy = hdrp_i_env_scaled(sh.xy, order2);
+    r.yz = hdrp_i_env_scaled(sh.yz, order2);
+    r.xz = hdrp_i_env_scaled(sh.xz, order2);
+    r.zz = hdrp_i_env_scaled(sh.zz, order2);
+    r.xx = hdrp_i_env_scaled(sh.xx, order2);
     return r;
 }
 
@@ -204,7 +211,8 @@ typedef struct hdrp_env {
 
 /** Bytes that hdrp_env_init needs.
  *  desc     sizes; NULL for the defaults
- *  returns  bytes; 0 where desc is not valid or too large for the target */
+ *  returns  bytes
+ *  edges    0 where desc is not valid, or too large for the target */
 HDRP_API size_t hdrp_env_memory_size(const hdrp_env_desc* desc);
 
 /** Places an environment in a block of memory. Texels are not initialised.
@@ -225,15 +233,15 @@ HDRP_API hdrp_result hdrp_env_init(hdrp_env* env, const hdrp_env_desc* desc, voi
  *  row_count  [0,24576]  rows to write; a call costs a look at the part of the image that its face
  *             sees, so a quarter of a face is a good job, a single row is not
  *  returns    HDRP_OK
- *  errors     HDRP_ERROR_NULL_POINTER, those of hdrp_hdri_check, HDRP_ERROR_BAD_ARGUMENT for a
+ *  errors     HDRP_ERROR_NULL_POINTER, those of hdrp_env_image_check, HDRP_ERROR_BAD_ARGUMENT for a
  *             bad range
  *  range      rows are independent
  *  error      <= 1e-4 relative, flux of any sky  @accuracy env_resample_flux
  *  note       piecewise constant in, piecewise constant out: a constant stays constant, no light is
  *             lost or doubled, not even of a sun of one texel, which only moves by a part of a
  *             texel; the curved edges of rows count as straight between 1.4 degrees */
-HDRP_API hdrp_result hdrp_env_resample(hdrp_env* env, const hdrp_hdri* image, uint32_t first_row,
-                                       uint32_t row_count);
+HDRP_API hdrp_result hdrp_env_resample(hdrp_env* env, const hdrp_env_image* image,
+                                       uint32_t first_row, uint32_t row_count);
 
 /** Second step: the mip levels of the radiance cube, each texel the mean of four by solid angle,
  *  and for each where its light comes from.
@@ -245,7 +253,7 @@ HDRP_API hdrp_result hdrp_env_resample(hdrp_env* env, const hdrp_hdri* image, ui
  *  range       faces are independent */
 HDRP_API hdrp_result hdrp_env_reduce(hdrp_env* env, uint32_t first_face, uint32_t face_count);
 
-/** Rows of the specular cube over all levels and faces: the end of the range of hdrp_env_prefilter.
+/** Rows of the specular cube over all levels and faces: where the range of hdrp_env_prefilter ends.
  *  env      from hdrp_env_init
  *  returns  rows; level 0 first
  *  edges    0 for a null pointer */
@@ -260,8 +268,8 @@ HDRP_API uint32_t hdrp_env_specular_rows(const hdrp_env* env);
  *  returns    HDRP_OK
  *  errors     HDRP_ERROR_NULL_POINTER, HDRP_ERROR_BAD_ARGUMENT for a bad range
  *  range      rows are independent; rows of level 1 cost most
- *  error      <= 1.6e-3 relative to the largest channel of the texel, broad coloured lights, default
- *             opening  @accuracy env_prefilter_broad
+ *  error      <= 1.6e-3 relative to the largest channel of the texel, broad coloured lights and
+ *             default opening  @accuracy env_prefilter_broad
  *  error      <= 1e-2 relative to the largest channel of the texel, with lamps of one or two texels
  *             that outshine the sky by 1e4 (0.1 % on average), default opening
  *             @accuracy env_prefilter_lamps
@@ -294,8 +302,8 @@ HDRP_API hdrp_result hdrp_env_convolve_irradiance(hdrp_env* env, uint32_t first_
  *  env      from hdrp_env_init
  *  image    the picture
  *  returns  HDRP_OK
- *  errors   HDRP_ERROR_NULL_POINTER, those of hdrp_hdri_check */
-HDRP_API hdrp_result hdrp_env_bake(hdrp_env* env, const hdrp_hdri* image);
+ *  errors   HDRP_ERROR_NULL_POINTER, those of hdrp_env_image_check */
+HDRP_API hdrp_result hdrp_env_bake(hdrp_env* env, const hdrp_env_image* image);
 
 /** Spherical harmonics of order 2 of the irradiance.
  *  env      after hdrp_env_reduce of all faces
@@ -311,7 +319,7 @@ HDRP_API hdrp_result hdrp_env_project_sh(const hdrp_env* env, hdrp_env_sh* sh);
  *  level    [0,31]  limited to the levels there are
  *  returns  a view: it owns nothing
  *  edges    none */
-HDRP_API hdrp_hdri hdrp_env_cube_image(const hdrp_env_cube* cube, uint32_t level);
+HDRP_API hdrp_env_image hdrp_env_cube_image(const hdrp_env_cube* cube, uint32_t level);
 
 /* >>lookup */
 
@@ -338,9 +346,9 @@ HDRP_API hdrp_v3 hdrp_env_radiance(const hdrp_env* env, hdrp_v3 direction, float
  *  perceptual_roughness  [0,1]
  *  returns               [nits], per channel; times the directional albedo of the lobe
  *  edges                 as hdrp_env_cube_lookup
- *  error                 <= 7e-2 relative to the mean of a sky of broad lights, roughness 0.05 to 1:
- *                        interpolation between texels and between levels of roughness,
- *                        which is nearly all of it  @accuracy env_specular */
+ *  error                 <= 7e-2 relative to the mean of a sky of broad lights, roughness 0.05
+ *                        to 1: nearly all of it is interpolation between levels of roughness
+ *                        @accuracy env_specular */
 HDRP_API hdrp_v3 hdrp_env_specular(const hdrp_env* env, hdrp_v3 direction,
                                    float perceptual_roughness);
 
@@ -361,6 +369,9 @@ HDRP_API hdrp_v3 hdrp_env_irradiance(const hdrp_env* env, hdrp_v3 normal);
 
 #if defined(HDRP_ENV_IMPLEMENTATION) && !defined(HDRP_ENV_IMPLEMENTED) && !defined(HDRP_GPU)
 #define HDRP_ENV_IMPLEMENTED
+
+/* Its bodies too, where it was included before the macro was defined. */
+#include "hdrp_env_image.h"
 
 /* ---- memory ---------------------------------------------------------------------------------- */
 
@@ -617,13 +628,13 @@ static void hdrp_i_env_project(const hdrp_i_env_target* target, double sin_longi
     double dz = sin_polar * cos_longitude;
     double s, t;
     switch (target->face) {
-    case HDRP_HDRI_FACE_POSITIVE_X:
-    case HDRP_HDRI_FACE_NEGATIVE_X:
+    case HDRP_ENV_FACE_POSITIVE_X:
+    case HDRP_ENV_FACE_NEGATIVE_X:
         s = -dz / dx;
         t = -dy / fabs(dx);
         break;
-    case HDRP_HDRI_FACE_POSITIVE_Y:
-    case HDRP_HDRI_FACE_NEGATIVE_Y:
+    case HDRP_ENV_FACE_POSITIVE_Y:
+    case HDRP_ENV_FACE_NEGATIVE_Y:
         s = dx / fabs(dy);
         t = dz / dy;
         break;
@@ -645,10 +656,10 @@ static int hdrp_i_env_row_sees(const hdrp_i_env_target* target, const double sin
     double lower = cos_polar[1] / sin_polar[1];
     double begin = 1.0 - 2.0 * target->first_row / target->size;
     double end = 1.0 - 2.0 * target->end_row / target->size;
-    if (target->face == HDRP_HDRI_FACE_POSITIVE_Y) {
+    if (target->face == HDRP_ENV_FACE_POSITIVE_Y) {
         return cos_polar[0] > 0.0 && sin_polar[0] < 1.4143 * cos_polar[0];
     }
-    if (target->face == HDRP_HDRI_FACE_NEGATIVE_Y) {
+    if (target->face == HDRP_ENV_FACE_NEGATIVE_Y) {
         return cos_polar[1] < 0.0 && sin_polar[1] < -1.4143 * cos_polar[1];
     }
     upper *= upper > 0.0 ? 1.4143 : 1.0;
@@ -662,7 +673,7 @@ static uint32_t hdrp_i_env_splits(uint32_t size, uint32_t wanted)
     return (wanted + size - 1u) / size;
 }
 
-static void hdrp_i_env_splat_latlong(const hdrp_i_env_target* target, const hdrp_hdri* image)
+static void hdrp_i_env_splat_latlong(const hdrp_i_env_target* target, const hdrp_env_image* image)
 {
     /* Eighths of the circle at which the side faces begin: +X at u = 1/8, -X 5/8, +Z 3/8, -Z 7/8;
      * the faces of the y axis see the whole circle. */
@@ -695,7 +706,7 @@ static void hdrp_i_env_splat_latlong(const hdrp_i_env_target* target, const hdrp
             hdrp_i_env_project(target, s, c, sin_polar[1], cos_polar[1], &quad.x[3], &quad.y[3]);
             if (i > begin) {
                 hdrp_i_env_splat(target, &quad,
-                                 hdrp_hdri_texel(image, j / split_y, (i - 1u) % w / split_x));
+                                 hdrp_env_image_texel(image, j / split_y, (i - 1u) % w / split_x));
             }
             /* The right edge of this texel is the left edge of the next. */
             quad.x[0] = quad.x[3];
@@ -706,7 +717,7 @@ static void hdrp_i_env_splat_latlong(const hdrp_i_env_target* target, const hdrp
     }
 }
 
-static void hdrp_i_env_splat_cube(const hdrp_i_env_target* target, const hdrp_hdri* image)
+static void hdrp_i_env_splat_cube(const hdrp_i_env_target* target, const hdrp_env_image* image)
 {
     uint32_t split = hdrp_i_env_splits(image->width, 64u);
     uint32_t n = image->width * split;
@@ -722,15 +733,15 @@ static void hdrp_i_env_splat_cube(const hdrp_i_env_target* target, const hdrp_hd
             quad.x[1] = quad.x[2] = (i + 1.0) * to_target;
             hdrp_i_env_splat(
                 target, &quad,
-                hdrp_hdri_texel(image, target->face * image->height + j / split, i / split));
+                hdrp_env_image_texel(image, target->face * image->height + j / split, i / split));
         }
     }
 }
 
-HDRP_API hdrp_result hdrp_env_resample(hdrp_env* env, const hdrp_hdri* image, uint32_t first_row,
-                                       uint32_t row_count)
+HDRP_API hdrp_result hdrp_env_resample(hdrp_env* env, const hdrp_env_image* image,
+                                       uint32_t first_row, uint32_t row_count)
 {
-    hdrp_result r = hdrp_hdri_check(image);
+    hdrp_result r = hdrp_env_image_check(image);
     uint32_t row, n;
     if (r != HDRP_OK || !env) {
         return r != HDRP_OK ? r : HDRP_ERROR_NULL_POINTER;
@@ -750,14 +761,14 @@ HDRP_API hdrp_result hdrp_env_resample(hdrp_env* env, const hdrp_hdri* image, ui
         target.end_row = target.end_row < n ? target.end_row : n;
         memset(target.texels + (size_t)target.first_row * n, 0,
                (size_t)(target.end_row - target.first_row) * n * sizeof(hdrp_v4));
-        if (image->kind == HDRP_HDRI_CUBE) {
+        if (image->kind == HDRP_ENV_CUBE) {
             hdrp_i_env_splat_cube(&target, image);
         } else {
             hdrp_i_env_splat_latlong(&target, image);
         }
         for (y = target.first_row; y < target.end_row; ++y) {
             for (x = 0u; x < n; ++x) {
-                target.texels[(size_t)y * n + x].w = hdrp_hdri_cube_solid_angle(x, y, n);
+                target.texels[(size_t)y * n + x].w = hdrp_env_cube_solid_angle(x, y, n);
             }
         }
         row += target.end_row - target.first_row;
@@ -779,9 +790,9 @@ static const hdrp_env_node* hdrp_i_env_node_at(const hdrp_env* env, uint32_t lev
     if (level > 0u) {
         return env->nodes + (index - (size_t)6u * n * n);
     }
-    c = hdrp_v3_normalize(hdrp_hdri_point_from_cube((hdrp_u32)(index / n / n),
-                                                    ((float)(index % n) + 0.5f) * k - 1.0f,
-                                                    ((float)(index / n % n) + 0.5f) * k - 1.0f));
+    c = hdrp_v3_normalize(hdrp_env_point_from_cube((hdrp_u32)(index / n / n),
+                                                   ((float)(index % n) + 0.5f) * k - 1.0f,
+                                                   ((float)(index / n % n) + 0.5f) * k - 1.0f));
     /* A square of side s has the variance s^2 / 12 along both axes at right angles to c. */
     variance = env->radiance.texels[index].w * (1.0f / 12.0f);
     place->light.mean = c;
@@ -1032,11 +1043,11 @@ HDRP_API uint32_t hdrp_env_specular_rows(const hdrp_env* env)
 
 static hdrp_v3 hdrp_i_env_texel_centre(uint32_t face, uint32_t x, uint32_t y, uint32_t size)
 {
-    hdrp_hdri_place place;
+    hdrp_env_place place;
     place.face = face;
     place.u = ((float)x + 0.5f) / (float)size;
     place.v = ((float)y + 0.5f) / (float)size;
-    return hdrp_hdri_direction_from_cube(place);
+    return hdrp_env_direction_from_cube(place);
 }
 
 HDRP_API hdrp_result hdrp_env_prefilter(hdrp_env* env, uint32_t first_row, uint32_t row_count)
@@ -1072,8 +1083,8 @@ HDRP_API hdrp_result hdrp_env_prefilter(hdrp_env* env, uint32_t first_row, uint3
                     continue;
                 }
                 lobe.axis = hdrp_i_env_texel_centre((row - begin) / n, x, (row - begin) % n, n);
-                texels[index] = hdrp_v4_from_v3(
-                    hdrp_i_env_gather(&lobe), hdrp_hdri_cube_solid_angle(x, (row - begin) % n, n));
+                texels[index] = hdrp_v4_from_v3(hdrp_i_env_gather(&lobe),
+                                                hdrp_env_cube_solid_angle(x, (row - begin) % n, n));
             }
         }
         begin = end;
@@ -1099,13 +1110,13 @@ HDRP_API hdrp_result hdrp_env_convolve_irradiance(hdrp_env* env, uint32_t first_
             lobe.axis = hdrp_i_env_texel_centre(row / n, x, row % n, n);
             env->irradiance.texels[(size_t)row * n + x] =
                 hdrp_v4_from_v3(hdrp_v3_scale(hdrp_i_env_gather(&lobe), HDRP_PI),
-                                hdrp_hdri_cube_solid_angle(x, row % n, n));
+                                hdrp_env_cube_solid_angle(x, row % n, n));
         }
     }
     return HDRP_OK;
 }
 
-HDRP_API hdrp_result hdrp_env_bake(hdrp_env* env, const hdrp_hdri* image)
+HDRP_API hdrp_result hdrp_env_bake(hdrp_env* env, const hdrp_env_image* image)
 {
     hdrp_result r = env ? HDRP_OK : HDRP_ERROR_NULL_POINTER;
     if (r == HDRP_OK) {
@@ -1178,7 +1189,7 @@ HDRP_API hdrp_result hdrp_env_project_sh(const hdrp_env* env, hdrp_env_sh* sh)
             }
         }
     }
-    coefficients[0] = &sh->constant;
+    coefficients[0] = &sh->mean;
     coefficients[1] = &sh->x;
     coefficients[2] = &sh->y;
     coefficients[3] = &sh->z;
@@ -1197,14 +1208,14 @@ HDRP_API hdrp_result hdrp_env_project_sh(const hdrp_env* env, hdrp_env_sh* sh)
 
 /* ---- lookup ---------------------------------------------------------------------------------- */
 
-HDRP_API hdrp_hdri hdrp_env_cube_image(const hdrp_env_cube* cube, uint32_t level)
+HDRP_API hdrp_env_image hdrp_env_cube_image(const hdrp_env_cube* cube, uint32_t level)
 {
-    hdrp_hdri image;
+    hdrp_env_image image;
     level = level < cube->level_count ? level : cube->level_count - 1u;
     memset(&image, 0, sizeof image);
     image.texels = &cube->texels[hdrp_i_env_level_offset(cube->size, level)].x;
     image.width = image.height = cube->size >> level;
-    image.kind = HDRP_HDRI_CUBE;
+    image.kind = HDRP_ENV_CUBE;
     image.texel_stride = 4u;
     return image;
 }
@@ -1214,11 +1225,11 @@ HDRP_API hdrp_v3 hdrp_env_cube_lookup(const hdrp_env_cube* cube, hdrp_v3 directi
     float l = hdrp_clamp(lod, 0.0f, (float)(cube->level_count - 1u));
     uint32_t level = (uint32_t)l;
     float t = l - (float)level;
-    hdrp_hdri fine = hdrp_env_cube_image(cube, level);
-    hdrp_v3 r = hdrp_hdri_radiance(&fine, direction);
+    hdrp_env_image fine = hdrp_env_cube_image(cube, level);
+    hdrp_v3 r = hdrp_env_image_radiance(&fine, direction);
     if (t > 0.0f) {
-        hdrp_hdri coarse = hdrp_env_cube_image(cube, level + 1u);
-        r = hdrp_v3_lerp(r, hdrp_hdri_radiance(&coarse, direction), t);
+        hdrp_env_image coarse = hdrp_env_cube_image(cube, level + 1u);
+        r = hdrp_v3_lerp(r, hdrp_env_image_radiance(&coarse, direction), t);
     }
     return r;
 }

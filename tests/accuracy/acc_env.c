@@ -45,7 +45,7 @@ static void sh_windowed_error(acc* a)
 {
     for (int i = 0; i < 10000; ++i) {
         hdrp_env_sh sh;
-        float* c = &sh.constant.x;
+        float* c = &sh.mean.x;
         memset(&sh, 0, sizeof sh);
         for (int k = 0; k < 36; ++k) {
             c[k] = (float)acc_uniform(a, -1.0, 1.0);
@@ -55,7 +55,7 @@ static void sh_windowed_error(acc* a)
         for (int k = 0; k < 36; ++k) {
             int l = k < 4 ? 0 : (k < 16 ? 1 : 2);
             double reference = (double)c[k] / (1.0 + lambda * pow(l * (l + 1.0), 2.0));
-            ACC_ADD(a, acc_relative((double)(&r.constant.x)[k], reference), "%d lambda %.9g", k,
+            ACC_ADD(a, acc_relative((double)(&r.mean.x)[k], reference), "%d lambda %.9g", k,
                     lambda);
         }
     }
@@ -69,21 +69,21 @@ static const double linear_axis[3] = {0.36, 0.48, -0.8};
 
 /* Fills an image: radiance linear in direction; a few broad lobes; the same with lamps of a texel
  * or a few, thousands of times brighter; or a single texel. */
-static void fill_sky(acc* a, const hdrp_hdri* image, sky_kind kind)
+static void fill_sky(acc* a, const hdrp_env_image* image, sky_kind kind)
 {
     double axis[6][3], power[6];
-    uint32_t count = image->width * hdrp_hdri_rows(image);
+    uint32_t count = image->width * hdrp_env_image_rows(image);
     for (int i = 0; i < 6; ++i) {
         acc_direction(a, axis[i]);
         power[i] = acc_uniform(a, 1.0, 12.0);
     }
     for (uint32_t k = 0; k < count; ++k) {
-        hdrp_hdri_place place = {k / image->width / image->height, 0.0f, 0.0f};
+        hdrp_env_place place = {k / image->width / image->height, 0.0f, 0.0f};
         place.u = ((float)(k % image->width) + 0.5f) / (float)image->width;
         place.v = ((float)(k / image->width % image->height) + 0.5f) / (float)image->height;
-        hdrp_v3 d = image->kind == HDRP_HDRI_CUBE
-                        ? hdrp_hdri_direction_from_cube(place)
-                        : hdrp_hdri_direction_from_latlong(hdrp_v2_make(place.u, place.v));
+        hdrp_v3 d = image->kind == HDRP_ENV_CUBE
+                        ? hdrp_env_direction_from_cube(place)
+                        : hdrp_env_direction_from_latlong(hdrp_v2_make(place.u, place.v));
         double v[3] = {(double)d.x, (double)d.y, (double)d.z}, c[3] = {0.02, 0.02, 0.02};
         for (int i = 0; i < 6; ++i) {
             double cosine = v[0] * axis[i][0] + v[1] * axis[i][1] + v[2] * axis[i][2];
@@ -108,7 +108,7 @@ static void fill_sky(acc* a, const hdrp_hdri* image, sky_kind kind)
 
 typedef struct sky {
     hdrp_env env;
-    hdrp_hdri image;
+    hdrp_env_image image;
     void* memory;
 } sky;
 
@@ -122,7 +122,7 @@ static sky make_sky(acc* a, sky_kind kind, uint32_t size, uint32_t specular_size
     desc.specular_size = specular_size;
     desc.opening = opening;
     s.image.width = s.image.height = size;
-    s.image.kind = HDRP_HDRI_CUBE;
+    s.image.kind = HDRP_ENV_CUBE;
     s.image.texels = malloc(sizeof(float) * 18u * size * size);
     s.memory = aligned_alloc(HDRP_MEMORY_ALIGNMENT, hdrp_env_memory_size(&desc));
     if (!s.image.texels || !s.memory ||
@@ -153,8 +153,8 @@ static void brute_force(const sky* s, hdrp_v3 axis, double alpha, double result[
     for (uint32_t k = 0; k < 6u * size * size; ++k) {
         const float* c = s->image.texels + 3u * k;
         uint32_t face = k / size / size, x = k % size, y = k / size % size;
-        hdrp_v3 m = hdrp_hdri_point_from_cube(face, ((float)x + 0.5f) * (float)wide - 1.0f,
-                                              ((float)y + 0.5f) * (float)wide - 1.0f);
+        hdrp_v3 m = hdrp_env_point_from_cube(face, ((float)x + 0.5f) * (float)wide - 1.0f,
+                                             ((float)y + 0.5f) * (float)wide - 1.0f);
         double middle = (double)hdrp_v3_dot(m, axis) / (double)hdrp_v3_length(m);
         double q = fmax(2.0 - 2.0 * middle, 0.0);
         bool narrow = q < 60.0 * wide * wide || (q < 16.0 * a2 && a2 < 25.0 * wide * wide);
@@ -165,7 +165,7 @@ static void brute_force(const sky* s, hdrp_v3 axis, double alpha, double result[
         for (int part = 0; part < parts * parts; ++part) {
             double u = (x + (part % parts + 0.5) / parts) * wide - 1.0;
             double v = (y + (part / parts + 0.5) / parts) * wide - 1.0;
-            hdrp_v3 p = hdrp_hdri_point_from_cube(face, (float)u, (float)v);
+            hdrp_v3 p = hdrp_env_point_from_cube(face, (float)u, (float)v);
             double l[3] = {(double)p.x, (double)p.y, (double)p.z};
             double r2 = l[0] * l[0] + l[1] * l[1] + l[2] * l[2], r = sqrt(r2), h2 = 0.0, n_dot_h;
             double n_dot_l = (l[0] * n[0] + l[1] * n[1] + l[2] * n[2]) / (r * length);
@@ -215,21 +215,22 @@ static void resample_flux_error(acc* a)
                                          {40, 0, 16},    {16, 0, 64}};
     for (int i = 0; i < 8; ++i) {
         const uint32_t* size = sizes[i % 8];
-        hdrp_hdri image = {0}, cube;
-        hdrp_hdri_stats before, after;
+        hdrp_env_image image = {0}, cube;
+        hdrp_env_stats before, after;
         sky s = make_sky(a, SKY_SUN, size[2], size[2], 0.0f);
         image.width = size[0];
         image.height = size[1] ? size[1] : size[0];
-        image.kind = size[1] ? HDRP_HDRI_LATLONG : HDRP_HDRI_CUBE;
-        image.texels = malloc(sizeof(float) * 3u * image.width * hdrp_hdri_rows(&s.image) * 100u);
+        image.kind = size[1] ? HDRP_ENV_LATLONG : HDRP_ENV_CUBE;
+        image.texels =
+            malloc(sizeof(float) * 3u * image.width * hdrp_env_image_rows(&s.image) * 100u);
         if (!image.texels) {
             abort();
         }
         fill_sky(a, &image, image.width < 16u ? SKY_BROAD : SKY_LAMPS);
         hdrp_env_resample(&s.env, &image, 0u, 6u * size[2]);
         cube = hdrp_env_cube_image(&s.env.radiance, 0u);
-        hdrp_hdri_measure(&image, &before);
-        hdrp_hdri_measure(&cube, &after);
+        hdrp_env_measure(&image, &before);
+        hdrp_env_measure(&cube, &after);
         for (int c = 0; c < 3; ++c) {
             ACC_ADD(a, acc_relative(after.average_nits_rgb[c], before.average_nits_rgb[c]),
                     "%u x %u to %u", size[0], size[1], size[2]);
@@ -362,8 +363,8 @@ static void specular_error(acc* a)
 {
     for (int i = 0; i < 1; ++i) {
         sky s = make_sky(a, SKY_BROAD, 64u, 64u, 0.5f);
-        hdrp_hdri_stats stats;
-        hdrp_hdri_measure(&s.image, &stats);
+        hdrp_env_stats stats;
+        hdrp_env_measure(&s.image, &stats);
         hdrp_env_prefilter(&s.env, 0u, hdrp_env_specular_rows(&s.env));
         for (int k = 0; k < 40; ++k) {
             double r = acc_uniform(a, 0.05, 1.0), reference[3];
@@ -400,9 +401,9 @@ static void irradiance_fast_sun_error(acc* a)
 {
     for (int i = 0; i < 4; ++i) {
         sky s = make_sky(a, SKY_SUN, 64u, 1u, 0.0f);
-        hdrp_hdri_sun sun;
+        hdrp_env_sun sun;
         hdrp_env_sh sh;
-        hdrp_hdri_find_sun(&s.image, 0.0f, &sun);
+        hdrp_env_find_sun(&s.image, 0.0f, &sun);
         hdrp_env_project_sh(&s.env, &sh);
         for (int k = 0; k < 2000; ++k) {
             hdrp_v3 n = any_normal(a);

@@ -1,4 +1,4 @@
-/* env_test.h - what the tests of hdrp_hdri.h and hdrp_env.h share.
+/* env_test.h - what the tests of hdrp_env_image.h and hdrp_env.h share.
  * SPDX-License-Identifier: MIT */
 #ifndef ENV_TEST_H
 #define ENV_TEST_H
@@ -33,11 +33,11 @@ static inline hdrp_v3 test_direction(uint64_t* state)
 }
 
 /* An image of constant radiance; free its texels. */
-static inline hdrp_hdri test_image(hdrp_hdri_kind kind, uint32_t width, uint32_t height,
-                                   float radiance)
+static inline hdrp_env_image test_image(hdrp_env_image_kind kind, uint32_t width, uint32_t height,
+                                        float radiance)
 {
-    hdrp_hdri image = {0};
-    size_t count = (size_t)width * height * (kind == HDRP_HDRI_CUBE ? 18u : 3u);
+    hdrp_env_image image = {0};
+    size_t count = (size_t)width * height * (kind == HDRP_ENV_CUBE ? 18u : 3u);
     image.kind = kind;
     image.width = width;
     image.height = height;
@@ -49,15 +49,16 @@ static inline hdrp_hdri test_image(hdrp_hdri_kind kind, uint32_t width, uint32_t
     return image;
 }
 
-static inline size_t test_floats(const hdrp_hdri* image)
+static inline size_t test_floats(const hdrp_env_image* image)
 {
-    return (size_t)3u * image->width * hdrp_hdri_rows(image);
+    return (size_t)3u * image->width * hdrp_env_image_rows(image);
 }
 
 /* Random texels, a few of them very bright. */
-static inline hdrp_hdri test_random_image(hdrp_hdri_kind kind, uint32_t width, uint32_t height)
+static inline hdrp_env_image test_random_image(hdrp_env_image_kind kind, uint32_t width,
+                                               uint32_t height)
 {
-    hdrp_hdri image = test_image(kind, width, height, 0.0f);
+    hdrp_env_image image = test_image(kind, width, height, 0.0f);
     uint64_t state = 1u + width * 1000u + height;
     for (size_t i = 0; i < test_floats(&image); ++i) {
         double v = test_random(&state);

@@ -1,10 +1,9 @@
 /* test_env_lookup.c - reading a baked environment.
  * SPDX-License-Identifier: MIT */
-#define HDRP_HDRI_IMPLEMENTATION
 #define HDRP_ENV_IMPLEMENTATION
 #include "env_test.h"
 
-static hdrp_env bake(hdrp_hdri image, uint32_t size, void** memory)
+static hdrp_env bake(hdrp_env_image image, uint32_t size, void** memory)
 {
     hdrp_env env;
     hdrp_env_desc desc = {0};
@@ -19,9 +18,9 @@ static hdrp_env bake(hdrp_hdri image, uint32_t size, void** memory)
 
 static hdrp_v3 texel_direction(uint32_t k, uint32_t n)
 {
-    hdrp_hdri_place place = {k / n / n, ((float)(k % n) + 0.5f) / (float)n,
-                             ((float)(k / n % n) + 0.5f) / (float)n};
-    return hdrp_hdri_direction_from_cube(place);
+    hdrp_env_place place = {k / n / n, ((float)(k % n) + 0.5f) / (float)n,
+                            ((float)(k / n % n) + 0.5f) / (float)n};
+    return hdrp_env_direction_from_cube(place);
 }
 
 static void levels_and_roughness_are_inverse_and_end_where_they_should(void** state)
@@ -51,13 +50,13 @@ static void lookups_at_texel_centres_read_the_texel(void** state)
 {
     (void)state;
     void* memory;
-    hdrp_env env = bake(test_random_image(HDRP_HDRI_CUBE, 16u, 16u), 16u, &memory);
+    hdrp_env env = bake(test_random_image(HDRP_ENV_CUBE, 16u, 16u), 16u, &memory);
     for (uint32_t level = 0; level < env.specular.level_count; ++level) {
-        hdrp_hdri image = hdrp_env_cube_image(&env.specular, level);
+        hdrp_env_image image = hdrp_env_cube_image(&env.specular, level);
         float roughness =
             hdrp_env_perceptual_roughness_from_lod((float)level, env.specular.level_count);
         for (uint32_t k = 0; k < 6u * image.width * image.width; ++k) {
-            hdrp_v3 t = hdrp_hdri_texel(&image, k / image.width, k % image.width);
+            hdrp_v3 t = hdrp_env_image_texel(&image, k / image.width, k % image.width);
             hdrp_v3 v = hdrp_env_specular(&env, texel_direction(k, image.width), roughness);
             double tolerance = 0.05 + 1e-4 * (double)(t.x + t.y + t.z);
             test_near_v3(v, (double)t.x, (double)t.y, (double)t.z, tolerance);
@@ -70,7 +69,7 @@ static void between_two_levels_is_their_mean(void** state)
 {
     (void)state;
     void* memory;
-    hdrp_env env = bake(test_random_image(HDRP_HDRI_LATLONG, 32u, 16u), 16u, &memory);
+    hdrp_env env = bake(test_random_image(HDRP_ENV_LATLONG, 32u, 16u), 16u, &memory);
     uint64_t random = 9u;
     for (int i = 0; i < 200; ++i) {
         hdrp_v3 d = test_direction(&random);
@@ -86,7 +85,7 @@ static void levels_outside_the_cube_are_its_ends(void** state)
 {
     (void)state;
     void* memory;
-    hdrp_env env = bake(test_random_image(HDRP_HDRI_LATLONG, 32u, 16u), 8u, &memory);
+    hdrp_env env = bake(test_random_image(HDRP_ENV_LATLONG, 32u, 16u), 8u, &memory);
     hdrp_v3 d = test_unit(1, 2, 3);
     float low[] = {-1.0f, NAN, -INFINITY}, high[] = {3.5f, 100.0f, INFINITY};
     for (int i = 0; i < 3; ++i) {
@@ -104,7 +103,7 @@ static void every_level_is_seamless(void** state)
 {
     (void)state;
     void* memory;
-    hdrp_hdri sky = test_random_image(HDRP_HDRI_LATLONG, 64u, 32u);
+    hdrp_env_image sky = test_random_image(HDRP_ENV_LATLONG, 64u, 32u);
     for (size_t i = 0; i < test_floats(&sky); ++i) {
         sky.texels[i] = fminf(sky.texels[i], 2.0f);
     }
@@ -127,10 +126,10 @@ static void every_level_is_seamless(void** state)
 static void irradiance_of_level_ground_is_the_measured_illuminance(void** state)
 {
     (void)state;
-    hdrp_hdri image = test_random_image(HDRP_HDRI_LATLONG, 128u, 64u);
-    hdrp_hdri_stats stats;
+    hdrp_env_image image = test_random_image(HDRP_ENV_LATLONG, 128u, 64u);
+    hdrp_env_stats stats = {0};
     void* memory;
-    assert_int_equal(hdrp_hdri_measure(&image, &stats), HDRP_OK);
+    assert_int_equal(hdrp_env_measure(&image, &stats), HDRP_OK);
     hdrp_env env = bake(image, 64u, &memory);
     hdrp_v3 e = hdrp_env_irradiance(&env, hdrp_v3_make(0.0f, 1.0f, 0.0f));
     test_near((double)e.x / stats.illuminance_lux_rgb[0], 1.0, 5e-3);
@@ -143,7 +142,7 @@ static void irradiance_of_level_ground_is_the_measured_illuminance(void** state)
 static void lookups_are_in_nits(void** state)
 {
     (void)state;
-    hdrp_hdri image = test_image(HDRP_HDRI_LATLONG, 8u, 4u, 2.0f);
+    hdrp_env_image image = test_image(HDRP_ENV_LATLONG, 8u, 4u, 2.0f);
     void* memory;
     image.nits_per_unit = 50.0f;
     hdrp_env env = bake(image, 4u, &memory);

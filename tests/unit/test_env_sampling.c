@@ -1,23 +1,23 @@
-/* test_hdri_sampling.c - directions in proportion to the luminance of an image.
+/* test_env_sampling.c - directions in proportion to the luminance of an image.
  * SPDX-License-Identifier: MIT */
-#define HDRP_HDRI_IMPLEMENTATION
+#define HDRP_ENV_IMPLEMENTATION
 #include "env_test.h"
 
 typedef struct fixture {
-    hdrp_hdri image;
-    hdrp_hdri_sampler sampler;
+    hdrp_env_image image;
+    hdrp_env_sampler sampler;
     void* memory;
 } fixture;
 
-static fixture make_fixture(hdrp_hdri image)
+static fixture make_fixture(hdrp_env_image image)
 {
     fixture f;
-    size_t bytes = hdrp_hdri_sampler_memory_size(&image);
+    size_t bytes = hdrp_env_sampler_memory_size(&image);
     f.image = image;
     f.memory = aligned_alloc(HDRP_MEMORY_ALIGNMENT, (bytes + 15u) / 16u * 16u);
-    assert_int_equal(hdrp_hdri_sampler_init(&f.sampler, &image, f.memory, bytes), HDRP_OK);
-    assert_int_equal(hdrp_hdri_sampler_build(&f.sampler, 0u, hdrp_hdri_rows(&image)), HDRP_OK);
-    assert_int_equal(hdrp_hdri_sampler_finish(&f.sampler), HDRP_OK);
+    assert_int_equal(hdrp_env_sampler_init(&f.sampler, &image, f.memory, bytes), HDRP_OK);
+    assert_int_equal(hdrp_env_sampler_build(&f.sampler, 0u, hdrp_env_image_rows(&image)), HDRP_OK);
+    assert_int_equal(hdrp_env_sampler_finish(&f.sampler), HDRP_OK);
     return f;
 }
 
@@ -28,19 +28,19 @@ static void free_fixture(fixture* f)
 }
 
 /* Direction, solid angle and texel of a point of a fine grid over an image. */
-static hdrp_v3 grid_point(const hdrp_hdri* image, uint32_t fine, uint32_t k, double* solid_angle,
-                          uint32_t* texel)
+static hdrp_v3 grid_point(const hdrp_env_image* image, uint32_t fine, uint32_t k,
+                          double* solid_angle, uint32_t* texel)
 {
     uint32_t w = image->width * fine, h = image->height * fine;
     uint32_t face = k / w / h, x = k % w, y = k / w % h;
-    hdrp_hdri_place place = {face, ((float)x + 0.5f) / (float)w, ((float)y + 0.5f) / (float)h};
+    hdrp_env_place place = {face, ((float)x + 0.5f) / (float)w, ((float)y + 0.5f) / (float)h};
     *texel = (face * image->height + y / fine) * image->width + x / fine;
-    if (image->kind == HDRP_HDRI_CUBE) {
-        *solid_angle = (double)hdrp_hdri_cube_solid_angle(x, y, w);
-        return hdrp_hdri_direction_from_cube(place);
+    if (image->kind == HDRP_ENV_CUBE) {
+        *solid_angle = (double)hdrp_env_cube_solid_angle(x, y, w);
+        return hdrp_env_direction_from_cube(place);
     }
-    *solid_angle = (double)hdrp_hdri_latlong_solid_angle(y, w, h);
-    return hdrp_hdri_direction_from_latlong(hdrp_v2_make(place.u, place.v));
+    *solid_angle = (double)hdrp_env_latlong_solid_angle(y, w, h);
+    return hdrp_env_direction_from_latlong(hdrp_v2_make(place.u, place.v));
 }
 
 static void the_density_integrates_to_one(void** state)
@@ -48,14 +48,14 @@ static void the_density_integrates_to_one(void** state)
     (void)state;
     for (int i = 0; i < 8; ++i) {
         uint32_t n = i < 4 ? 1u + (uint32_t)i : 13u;
-        fixture f = make_fixture(test_random_image((hdrp_hdri_kind)(i % 2), n, n));
+        fixture f = make_fixture(test_random_image((hdrp_env_image_kind)(i % 2), n, n));
         uint32_t fine = 16u;
         double sum = 0.0;
-        for (uint32_t k = 0; k < n * fine * hdrp_hdri_rows(&f.image) * fine; ++k) {
+        for (uint32_t k = 0; k < n * fine * hdrp_env_image_rows(&f.image) * fine; ++k) {
             double solid_angle;
             uint32_t texel;
             hdrp_v3 d = grid_point(&f.image, fine, k, &solid_angle, &texel);
-            sum += solid_angle * (double)hdrp_hdri_sampler_pdf(&f.sampler, d);
+            sum += solid_angle * (double)hdrp_env_sampler_pdf(&f.sampler, d);
         }
         test_near(sum, 1.0, 3e-3 / n);
         free_fixture(&f);
@@ -67,10 +67,10 @@ static void samples_follow_the_density(void** state)
 {
     (void)state;
     for (int kind = 0; kind < 2; ++kind) {
-        fixture f = make_fixture(test_random_image((hdrp_hdri_kind)kind, 8u, 8u));
+        fixture f = make_fixture(test_random_image((hdrp_env_image_kind)kind, 8u, 8u));
         enum { SAMPLES = 200000, FINE = 8, BINS = 6 * 16 * 16 };
         static double expected[BINS], counted[BINS];
-        uint32_t rows = hdrp_hdri_rows(&f.image), bins = rows * 8u * 4u;
+        uint32_t rows = hdrp_env_image_rows(&f.image), bins = rows * 8u * 4u;
         uint64_t random = 5u;
         double chi2 = 0.0;
         int degrees = 0;
@@ -81,14 +81,14 @@ static void samples_follow_the_density(void** state)
             uint32_t texel, x = k % (8u * FINE), y = k / (8u * FINE);
             hdrp_v3 d = grid_point(&f.image, FINE, k, &solid_angle, &texel);
             expected[y / 4u * 16u + x / 4u] +=
-                SAMPLES * solid_angle * (double)hdrp_hdri_sampler_pdf(&f.sampler, d);
+                SAMPLES * solid_angle * (double)hdrp_env_sampler_pdf(&f.sampler, d);
         }
         for (int i = 0; i < SAMPLES; ++i) {
-            hdrp_hdri_sample s = hdrp_hdri_sampler_sample(&f.sampler, (float)test_random(&random),
-                                                          (float)test_random(&random));
-            hdrp_hdri_place p = hdrp_hdri_cube_from_direction(s.direction);
+            hdrp_env_sample s = hdrp_env_sampler_sample(&f.sampler, (float)test_random(&random),
+                                                        (float)test_random(&random));
+            hdrp_env_place p = hdrp_env_cube_from_direction(s.direction);
             if (kind == 0) {
-                hdrp_v2 uv = hdrp_hdri_latlong_from_direction(s.direction);
+                hdrp_v2 uv = hdrp_env_latlong_from_direction(s.direction);
                 p.face = 0u;
                 p.u = uv.x;
                 p.v = uv.y;
@@ -114,14 +114,14 @@ static void a_sample_knows_its_density_and_radiance(void** state)
 {
     (void)state;
     for (int kind = 0; kind < 2; ++kind) {
-        fixture f = make_fixture(test_random_image((hdrp_hdri_kind)kind, 16u, 16u));
+        fixture f = make_fixture(test_random_image((hdrp_env_image_kind)kind, 16u, 16u));
         uint64_t random = 6u;
         int wrong = 0;
         for (int i = 0; i < 20000; ++i) {
-            hdrp_hdri_sample s = hdrp_hdri_sampler_sample(&f.sampler, (float)test_random(&random),
-                                                          (float)test_random(&random));
-            hdrp_v3 v = hdrp_hdri_radiance(&f.image, s.direction);
-            double pdf = (double)hdrp_hdri_sampler_pdf(&f.sampler, s.direction);
+            hdrp_env_sample s = hdrp_env_sampler_sample(&f.sampler, (float)test_random(&random),
+                                                        (float)test_random(&random));
+            hdrp_v3 v = hdrp_env_image_radiance(&f.image, s.direction);
+            double pdf = (double)hdrp_env_sampler_pdf(&f.sampler, s.direction);
             assert_memory_equal(&v, &s.radiance_nits, sizeof v);
             assert_true(s.pdf_per_sr > 0.0f);
             test_near((double)hdrp_v3_length(s.direction), 1.0, 1e-6);
@@ -139,23 +139,23 @@ static void the_estimate_of_the_flux_is_unbiased(void** state)
 {
     (void)state;
     for (int kind = 0; kind < 2; ++kind) {
-        hdrp_hdri image = test_image((hdrp_hdri_kind)kind, 24u, 24u, 0.0f);
+        hdrp_env_image image = test_image((hdrp_env_image_kind)kind, 24u, 24u, 0.0f);
         image.texels[3 * 24 * 7 + 30] = 1e6f; /* red only: still seen by luminance */
         image.texels[3 * 24 * 20 + 9] = 1.0f;
         fixture f = make_fixture(image);
         uint64_t random = 7u;
         double flux = 0.0, reference = 0.0;
-        for (uint32_t k = 0; k < 24u * 8u * hdrp_hdri_rows(&image) * 8u; ++k) {
+        for (uint32_t k = 0; k < 24u * 8u * hdrp_env_image_rows(&image) * 8u; ++k) {
             double solid_angle;
             uint32_t texel;
             hdrp_v3 d = grid_point(&image, 8u, k, &solid_angle, &texel);
-            hdrp_v3 v = hdrp_hdri_radiance(&image, d);
+            hdrp_v3 v = hdrp_env_image_radiance(&image, d);
             reference += solid_angle * (double)v.x;
-            assert_true(v.x + v.y + v.z == 0.0f || hdrp_hdri_sampler_pdf(&f.sampler, d) > 0.0f);
+            assert_true(v.x + v.y + v.z == 0.0f || hdrp_env_sampler_pdf(&f.sampler, d) > 0.0f);
         }
         for (int i = 0; i < 200000; ++i) {
-            hdrp_hdri_sample s = hdrp_hdri_sampler_sample(&f.sampler, (float)test_random(&random),
-                                                          (float)test_random(&random));
+            hdrp_env_sample s = hdrp_env_sampler_sample(&f.sampler, (float)test_random(&random),
+                                                        (float)test_random(&random));
             flux += (double)s.radiance_nits.x / (double)s.pdf_per_sr / 200000.0;
         }
         test_near(flux / reference, 1.0, 0.01);
@@ -167,19 +167,19 @@ static void building_does_not_depend_on_the_split(void** state)
 {
     (void)state;
     for (int kind = 0; kind < 2; ++kind) {
-        fixture f = make_fixture(test_random_image((hdrp_hdri_kind)kind, 9u, 9u));
-        uint32_t rows = hdrp_hdri_rows(&f.image);
-        size_t bytes = hdrp_hdri_sampler_memory_size(&f.image);
+        fixture f = make_fixture(test_random_image((hdrp_env_image_kind)kind, 9u, 9u));
+        uint32_t rows = hdrp_env_image_rows(&f.image);
+        size_t bytes = hdrp_env_sampler_memory_size(&f.image);
         void* memory = aligned_alloc(HDRP_MEMORY_ALIGNMENT, (bytes + 15u) / 16u * 16u);
         for (uint32_t step = 1; step < rows; ++step) {
-            hdrp_hdri_sampler sampler;
+            hdrp_env_sampler sampler;
             memset(memory, 0xff, bytes);
-            assert_int_equal(hdrp_hdri_sampler_init(&sampler, &f.image, memory, bytes), HDRP_OK);
+            assert_int_equal(hdrp_env_sampler_init(&sampler, &f.image, memory, bytes), HDRP_OK);
             for (uint32_t end = rows; end > 0u; end -= end < step ? end : step) {
                 uint32_t first = end < step ? 0u : end - step;
-                assert_int_equal(hdrp_hdri_sampler_build(&sampler, first, end - first), HDRP_OK);
+                assert_int_equal(hdrp_env_sampler_build(&sampler, first, end - first), HDRP_OK);
             }
-            assert_int_equal(hdrp_hdri_sampler_finish(&sampler), HDRP_OK);
+            assert_int_equal(hdrp_env_sampler_finish(&sampler), HDRP_OK);
             assert_memory_equal(memory, f.memory, bytes);
         }
         free(memory);
@@ -190,10 +190,10 @@ static void building_does_not_depend_on_the_split(void** state)
 static void numbers_outside_the_range_give_a_sample(void** state)
 {
     (void)state;
-    fixture f = make_fixture(test_random_image(HDRP_HDRI_LATLONG, 4u, 4u));
+    fixture f = make_fixture(test_random_image(HDRP_ENV_LATLONG, 4u, 4u));
     float u[] = {0.0f, 1.0f, -1.0f, NAN, INFINITY, 0.99999994f};
     for (int i = 0; i < 36; ++i) {
-        hdrp_hdri_sample s = hdrp_hdri_sampler_sample(&f.sampler, u[i % 6], u[i / 6]);
+        hdrp_env_sample s = hdrp_env_sampler_sample(&f.sampler, u[i % 6], u[i / 6]);
         test_near((double)hdrp_v3_length(s.direction), 1.0, 1e-6);
         assert_true(s.pdf_per_sr > 0.0f && s.pdf_per_sr <= HDRP_FLT_MAX);
     }
@@ -203,29 +203,27 @@ static void numbers_outside_the_range_give_a_sample(void** state)
 static void errors_are_reported_and_change_nothing(void** state)
 {
     (void)state;
-    hdrp_hdri image = test_image(HDRP_HDRI_LATLONG, 4u, 4u, 0.0f), bad = image;
-    size_t bytes = hdrp_hdri_sampler_memory_size(&image);
+    hdrp_env_image image = test_image(HDRP_ENV_LATLONG, 4u, 4u, 0.0f), bad = image;
+    size_t bytes = hdrp_env_sampler_memory_size(&image);
     char* memory = aligned_alloc(HDRP_MEMORY_ALIGNMENT, (bytes + 31u) / 16u * 16u);
-    hdrp_hdri_sampler sampler, before;
+    hdrp_env_sampler sampler, before;
     bad.height = 0u;
     memset(&sampler, 7, sizeof sampler);
     before = sampler;
-    assert_int_equal(hdrp_hdri_sampler_memory_size(&bad), 0);
-    assert_int_equal(hdrp_hdri_sampler_init(&sampler, &bad, memory, bytes),
-                     HDRP_ERROR_BAD_ARGUMENT);
-    assert_int_equal(hdrp_hdri_sampler_init(&sampler, &image, NULL, bytes),
-                     HDRP_ERROR_NULL_POINTER);
-    assert_int_equal(hdrp_hdri_sampler_init(&sampler, &image, memory, bytes - 1u),
+    assert_int_equal(hdrp_env_sampler_memory_size(&bad), 0);
+    assert_int_equal(hdrp_env_sampler_init(&sampler, &bad, memory, bytes), HDRP_ERROR_BAD_ARGUMENT);
+    assert_int_equal(hdrp_env_sampler_init(&sampler, &image, NULL, bytes), HDRP_ERROR_NULL_POINTER);
+    assert_int_equal(hdrp_env_sampler_init(&sampler, &image, memory, bytes - 1u),
                      HDRP_ERROR_MEMORY_TOO_SMALL);
-    assert_int_equal(hdrp_hdri_sampler_init(&sampler, &image, memory + 4, bytes),
+    assert_int_equal(hdrp_env_sampler_init(&sampler, &image, memory + 4, bytes),
                      HDRP_ERROR_MEMORY_ALIGNMENT);
     assert_memory_equal(&sampler, &before, sizeof sampler);
-    assert_int_equal(hdrp_hdri_sampler_init(&sampler, &image, memory, bytes), HDRP_OK);
-    assert_int_equal(hdrp_hdri_sampler_build(&sampler, 0u, 5u), HDRP_ERROR_BAD_ARGUMENT);
-    assert_int_equal(hdrp_hdri_sampler_build(NULL, 0u, 4u), HDRP_ERROR_NULL_POINTER);
-    assert_int_equal(hdrp_hdri_sampler_build(&sampler, 0u, 4u), HDRP_OK);
-    assert_int_equal(hdrp_hdri_sampler_finish(&sampler), HDRP_ERROR_BAD_ARGUMENT); /* black */
-    assert_int_equal(hdrp_hdri_sampler_finish(NULL), HDRP_ERROR_NULL_POINTER);
+    assert_int_equal(hdrp_env_sampler_init(&sampler, &image, memory, bytes), HDRP_OK);
+    assert_int_equal(hdrp_env_sampler_build(&sampler, 0u, 5u), HDRP_ERROR_BAD_ARGUMENT);
+    assert_int_equal(hdrp_env_sampler_build(NULL, 0u, 4u), HDRP_ERROR_NULL_POINTER);
+    assert_int_equal(hdrp_env_sampler_build(&sampler, 0u, 4u), HDRP_OK);
+    assert_int_equal(hdrp_env_sampler_finish(&sampler), HDRP_ERROR_BAD_ARGUMENT); /* black */
+    assert_int_equal(hdrp_env_sampler_finish(NULL), HDRP_ERROR_NULL_POINTER);
     free(memory);
     free(image.texels);
 }

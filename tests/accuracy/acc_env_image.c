@@ -1,11 +1,11 @@
-/* acc_hdri.c - accuracy of hdrp_hdri.h.
+/* acc_env_image.c - accuracy of hdrp_env_image.h.
  * SPDX-License-Identifier: MIT */
 #include "accuracy.h"
 
 #include <stdlib.h>
 
-#define HDRP_HDRI_IMPLEMENTATION
-#include "hdrp_hdri.h"
+/* acc_env.c compiles the bodies of both headers. */
+#include "hdrp_env_image.h"
 
 #define PI 3.14159265358979323846
 
@@ -45,7 +45,7 @@ static void latlong_uv_error(acc* a)
 {
     for (int i = 0; i < 300000; ++i) {
         hdrp_v3 d = any_direction(a, i);
-        hdrp_v2 uv = hdrp_hdri_latlong_from_direction(d);
+        hdrp_v2 uv = hdrp_env_latlong_from_direction(d);
         double x = (double)d.x, y = (double)d.y, z = (double)d.z;
         double length = sqrt(x * x + y * y + z * z), across = hypot(x, z);
         double polar = 2.0 * atan2(hypot(across, y - length), hypot(across, y + length));
@@ -66,7 +66,7 @@ static void latlong_direction_error(acc* a)
         if (i < 81) {
             uv = hdrp_v2_make((float)(i % 9) / 8.0f, (float)(i / 9) / 8.0f);
         }
-        hdrp_v3 d = hdrp_hdri_direction_from_latlong(uv);
+        hdrp_v3 d = hdrp_env_direction_from_latlong(uv);
         double p = tan(0.5 * PI * (double)uv.y), q = tan(PI * (0.5 - (double)uv.x));
         double across = 2.0 / (1.0 / p + p), up = 2.0 / (1.0 + p * p) - 1.0;
         ACC_ADD(a,
@@ -93,7 +93,7 @@ static void cube_place_error(acc* a)
     for (int i = 0; i < 300000; ++i) {
         hdrp_v3 f = any_direction(a, i);
         double d[3] = {(double)f.x, (double)f.y, (double)f.z};
-        hdrp_hdri_place place = hdrp_hdri_cube_from_direction(f);
+        hdrp_env_place place = hdrp_env_cube_from_direction(f);
         int best = 0;
         for (int face = 1; face < 6; ++face) {
             best = dot(face_axes[face][2], d) > dot(face_axes[best][2], d) ? face : best;
@@ -110,11 +110,11 @@ static void cube_place_error(acc* a)
 static void cube_direction_error(acc* a)
 {
     for (int i = 0; i < 300000; ++i) {
-        hdrp_hdri_place place;
+        hdrp_env_place place;
         place.face = (hdrp_u32)(i % 6);
         place.u = i < 54 ? (float)(i / 6 % 3) / 2.0f : (float)acc_uniform(a, 0.0, 1.0);
         place.v = i < 54 ? (float)(i / 18) / 2.0f : (float)acc_uniform(a, 0.0, 1.0);
-        hdrp_v3 d = hdrp_hdri_direction_from_cube(place);
+        hdrp_v3 d = hdrp_env_direction_from_cube(place);
         double p[3];
         for (int k = 0; k < 3; ++k) {
             p[k] = face_axes[place.face][0][k] * (2.0 * (double)place.u - 1.0) +
@@ -139,8 +139,8 @@ static void openexr_place_error(acc* a)
     for (int i = 0; i < 60000; ++i) {
         hdrp_v3 f = any_direction(a, i);
         double d[3] = {(double)f.x, (double)f.y, (double)f.z};
-        hdrp_hdri_place ours = hdrp_hdri_cube_from_direction(f);
-        hdrp_hdri_place theirs = hdrp_hdri_cube_from_openexr(ours);
+        hdrp_env_place ours = hdrp_env_cube_from_direction(f);
+        hdrp_env_place theirs = hdrp_env_cube_from_openexr(ours);
         double outward = dot(face_axes[ours.face][2], d);
         double u = 0.5 + 0.5 * dot(openexr_axes[ours.face][0], d) / outward;
         double v = 0.5 + 0.5 * dot(openexr_axes[ours.face][1], d) / outward;
@@ -179,7 +179,7 @@ static void latlong_solid_angle_error(acc* a)
         any_texel(a, h, &y);
         long double upper = (long double)PI * y / h, lower = (long double)PI * (y + 1.0L) / h;
         double reference = (double)(2.0L * (long double)PI / w * (cosl(upper) - cosl(lower)));
-        ACC_ADD(a, acc_relative((double)hdrp_hdri_latlong_solid_angle(y, w, h), reference),
+        ACC_ADD(a, acc_relative((double)hdrp_env_latlong_solid_angle(y, w, h), reference),
                 "row %u of %u x %u", y, w, h);
     }
 }
@@ -194,7 +194,7 @@ static void latlong_cosine_weight_error(acc* a)
         long double lower = fminl((long double)PI * (y + 1.0L) / h, horizon);
         long double s = sinl(lower), t = sinl(upper);
         double reference = 2u * y >= h ? 0.0 : (double)((long double)PI / w * (s * s - t * t));
-        ACC_ADD(a, acc_relative((double)hdrp_hdri_latlong_cosine_weight(y, w, h), reference),
+        ACC_ADD(a, acc_relative((double)hdrp_env_latlong_cosine_weight(y, w, h), reference),
                 "row %u of %u x %u", y, w, h);
     }
 }
@@ -217,9 +217,9 @@ static void cube_solid_angle_error(acc* a)
         uint32_t n = any_size(a, 65536.0), x, y;
         any_texel(a, n, &x);
         any_texel(a, n, &y);
-        ACC_ADD(
-            a, acc_relative((double)hdrp_hdri_cube_solid_angle(x, y, n), cube_solid_angle(x, y, n)),
-            "texel (%u, %u) of %u", x, y, n);
+        ACC_ADD(a,
+                acc_relative((double)hdrp_env_cube_solid_angle(x, y, n), cube_solid_angle(x, y, n)),
+                "texel (%u, %u) of %u", x, y, n);
     }
 }
 
@@ -277,21 +277,21 @@ static void cube_cosine_weight_error(acc* a)
         any_texel(a, n, &x);
         any_texel(a, n, &y);
         ACC_ADD(a,
-                acc_relative((double)hdrp_hdri_cube_cosine_weight(face, x, y, n),
+                acc_relative((double)hdrp_env_cube_cosine_weight(face, x, y, n),
                              cosine_weight(face, x, y, n)),
                 "face %u texel (%u, %u) of %u", face, x, y, n);
     }
 }
 
 /* An image of random texels with a few bright ones. */
-static hdrp_hdri random_image(acc* a, int cube, uint32_t width, uint32_t height, float* texels)
+static hdrp_env_image random_image(acc* a, int cube, uint32_t width, uint32_t height, float* texels)
 {
-    hdrp_hdri image = {0};
+    hdrp_env_image image = {0};
     image.texels = texels;
     image.width = width;
     image.height = cube ? width : height;
-    image.kind = cube ? HDRP_HDRI_CUBE : HDRP_HDRI_LATLONG;
-    for (uint32_t i = 0; i < 3u * image.width * hdrp_hdri_rows(&image); ++i) {
+    image.kind = cube ? HDRP_ENV_CUBE : HDRP_ENV_LATLONG;
+    for (uint32_t i = 0; i < 3u * image.width * hdrp_env_image_rows(&image); ++i) {
         texels[i] = (float)acc_log_uniform(a, 1e-2, i % 97u ? 1e1 : 1e6);
     }
     return image;
@@ -304,13 +304,13 @@ static void measure_error(acc* a)
     for (int i = 0; i < 60 && texels; ++i) {
         int cube = i % 2;
         uint32_t w = any_size(a, cube ? 24.0 : 64.0), h = cube ? w : any_size(a, 64.0);
-        hdrp_hdri image = random_image(a, cube, w, h, texels);
-        hdrp_hdri_stats stats;
+        hdrp_env_image image = random_image(a, cube, w, h, texels);
+        hdrp_env_stats stats;
         double lux[3] = {0.0, 0.0, 0.0}, flux[3] = {0.0, 0.0, 0.0};
-        if (hdrp_hdri_measure(&image, &stats) != HDRP_OK) {
+        if (hdrp_env_measure(&image, &stats) != HDRP_OK) {
             ACC_ADD(a, 1.0, "measure failed for %u x %u", w, h);
         }
-        for (uint32_t k = 0; k < w * hdrp_hdri_rows(&image); ++k) {
+        for (uint32_t k = 0; k < w * hdrp_env_image_rows(&image); ++k) {
             uint32_t x = k % w, y = k / w % h, face = k / w / h;
             double polar0 = PI * y / h, polar1 = PI * (y + 1.0) / h;
             double cosine =
@@ -343,13 +343,16 @@ static void remove_sun_error(acc* a)
     for (int i = 0; i < 24 && texels; ++i) {
         int cube = i % 3 == 0;
         uint32_t w = cube ? 64u : 256u, h = cube ? 64u : 128u;
-        hdrp_hdri image = random_image(a, cube, w, h, texels);
+        hdrp_env_image image = random_image(a, cube, w, h, texels);
         double elevation = acc_uniform(a, 0.1, 1.5), azimuth = acc_uniform(a, 0.0, 2.0 * PI);
         double s[3] = {cos(elevation) * sin(azimuth), sin(elevation),
                        cos(elevation) * cos(azimuth)};
         double radius = acc_uniform(a, 0.002, 0.03);
-        for (uint32_t k = 0; k < w * hdrp_hdri_rows(&image); ++k) {
-            hdrp_v3 d = hdrp_i_hdri_texel_direction(&image, k / w, k % w);
+        for (uint32_t k = 0; k < w * hdrp_env_image_rows(&image); ++k) {
+            hdrp_env_place place = {k / w / h, ((float)(k % w) + 0.5f) / (float)w,
+                                    ((float)(k / w % h) + 0.5f) / (float)h};
+            hdrp_v3 d = cube ? hdrp_env_direction_from_cube(place)
+                             : hdrp_env_direction_from_latlong(hdrp_v2_make(place.u, place.v));
             double q = pow((double)d.x - s[0], 2.0) + pow((double)d.y - s[1], 2.0) +
                        pow((double)d.z - s[2], 2.0);
             double glow = 1e6 / (1.0 + pow(q / (radius * radius), 2.0));
@@ -357,12 +360,12 @@ static void remove_sun_error(acc* a)
                 texels[3u * k + (uint32_t)c] = (float)(1.0 + (double)d.y * 0.5 + glow / (c + 1.0));
             }
         }
-        hdrp_hdri_stats before, after;
-        hdrp_hdri_sun sun;
-        hdrp_hdri_measure(&image, &before);
-        hdrp_hdri_find_sun(&image, 0.0f, &sun);
-        hdrp_hdri_remove_sun(&image, &sun);
-        hdrp_hdri_measure(&image, &after);
+        hdrp_env_stats before, after;
+        hdrp_env_sun sun;
+        hdrp_env_measure(&image, &before);
+        hdrp_env_find_sun(&image, 0.0f, &sun);
+        hdrp_env_remove_sun(&image, &sun);
+        hdrp_env_measure(&image, &after);
         double direct = 0.2126 * (double)sun.illuminance_lux.x +
                         0.7152 * (double)sun.illuminance_lux.y +
                         0.0722 * (double)sun.illuminance_lux.z;
@@ -373,17 +376,17 @@ static void remove_sun_error(acc* a)
     free(texels);
 }
 
-const acc_entry acc_hdri[] = {
-    {"hdri_latlong_uv", latlong_uv_error},
-    {"hdri_latlong_direction", latlong_direction_error},
-    {"hdri_cube_place", cube_place_error},
-    {"hdri_cube_direction", cube_direction_error},
-    {"hdri_openexr_place", openexr_place_error},
-    {"hdri_latlong_solid_angle", latlong_solid_angle_error},
-    {"hdri_latlong_cosine_weight", latlong_cosine_weight_error},
-    {"hdri_cube_solid_angle", cube_solid_angle_error},
-    {"hdri_cube_cosine_weight", cube_cosine_weight_error},
-    {"hdri_measure", measure_error},
-    {"hdri_remove_sun", remove_sun_error},
+const acc_entry acc_env_image[] = {
+    {"env_latlong_uv", latlong_uv_error},
+    {"env_latlong_direction", latlong_direction_error},
+    {"env_cube_place", cube_place_error},
+    {"env_cube_direction", cube_direction_error},
+    {"env_openexr_place", openexr_place_error},
+    {"env_latlong_solid_angle", latlong_solid_angle_error},
+    {"env_latlong_cosine_weight", latlong_cosine_weight_error},
+    {"env_cube_solid_angle", cube_solid_angle_error},
+    {"env_cube_cosine_weight", cube_cosine_weight_error},
+    {"env_measure", measure_error},
+    {"env_remove_sun", remove_sun_error},
     {NULL, NULL},
 };
