@@ -209,15 +209,15 @@ HDRP_FN hdrp_env_place hdrp_env_cube_from_openexr(hdrp_env_place place)
  *  width    [1,65536]
  *  height   [1,65536]
  *  returns  (0,inf)    [sr]; over all texels the sum is 4 pi
- *  edges    a row that is not below height gives a finite value without meaning
+ *  edges    a row that is not below height counts as the last
  *  error    <= 4.5e-7 relative  @accuracy env_latlong_solid_angle
  *  source   the difference of the cosines of the two edges, as a product */
 HDRP_FN float hdrp_env_latlong_solid_angle(hdrp_u32 y, hdrp_u32 width, hdrp_u32 height)
 {
     float h = hdrp_f32_from_u32(height);
+    float row = hdrp_min(hdrp_f32_from_u32(y), h - 1.0f);
     /* Rows are alike from both poles; the sine is precise near the upper one. */
-    float row = hdrp_min(hdrp_f32_from_u32(y), h - 1.0f - hdrp_f32_from_u32(y));
-    float middle = hdrp_sin((row + 0.5f) * (HDRP_PI / h));
+    float middle = hdrp_sin((hdrp_min(row, h - 1.0f - row) + 0.5f) * (HDRP_PI / h));
     return 4.0f * HDRP_PI * (middle * hdrp_sin(HDRP_HALF_PI / h)) / hdrp_f32_from_u32(width);
 }
 
@@ -258,7 +258,7 @@ HDRP_FN float hdrp_i_image_triangle(hdrp_v2 a, hdrp_v2 b, hdrp_v2 c, float twice
  *  y        [0,65535]  row, below size
  *  size     [1,65536]  texels along the edge of a face
  *  returns  (0,inf)    [sr]; over the texels of one face the sum is 4 pi / 6
- *  edges    a place outside the face gives a finite value without meaning
+ *  edges    a column or row that is not below size counts as the last
  *  error    <= 4e-7 relative  @accuracy env_cube_solid_angle
  *  source   van Oosterom and Strackee 1983, "The Solid Angle of a Plane Triangle", eq. 8
  *  note     two triangles: their triple products are the area of the texel, which is exact, where
@@ -267,10 +267,13 @@ HDRP_FN float hdrp_env_cube_solid_angle(hdrp_u32 x, hdrp_u32 y, hdrp_u32 size)
 {
     float n = hdrp_f32_from_u32(size);
     float side = 2.0f / n;
-    float s0 = (2.0f * hdrp_f32_from_u32(x) - n) / n;
-    float s1 = (2.0f * hdrp_f32_from_u32(x) + 2.0f - n) / n;
-    float t0 = (2.0f * hdrp_f32_from_u32(y) - n) / n;
-    float t1 = (2.0f * hdrp_f32_from_u32(y) + 2.0f - n) / n;
+    /* Distances from the middle of the face in half texels: exact. */
+    float left = 2.0f * hdrp_min(hdrp_f32_from_u32(x), n - 1.0f) - n;
+    float upper = 2.0f * hdrp_min(hdrp_f32_from_u32(y), n - 1.0f) - n;
+    float s0 = left / n;
+    float s1 = (left + 2.0f) / n;
+    float t0 = upper / n;
+    float t1 = (upper + 2.0f) / n;
     hdrp_v2 a = hdrp_v2_make(s0, t0);
     hdrp_v2 b = hdrp_v2_make(s1, t1);
     return hdrp_i_image_triangle(a, hdrp_v2_make(s1, t0), b, side * side) +
@@ -316,9 +319,8 @@ HDRP_FN float hdrp_env_cube_cosine_weight(hdrp_u32 face, hdrp_u32 x, hdrp_u32 y,
 {
     float n = hdrp_f32_from_u32(size);
     float side = 2.0f / n;
-    /* Distances from the middle of the face in half texels: exact. */
-    float left = 2.0f * hdrp_f32_from_u32(x) - n;
-    float upper = 2.0f * hdrp_f32_from_u32(y) - n;
+    float left = 2.0f * hdrp_min(hdrp_f32_from_u32(x), n - 1.0f) - n;
+    float upper = 2.0f * hdrp_min(hdrp_f32_from_u32(y), n - 1.0f) - n;
     float above = hdrp_max(-upper, 0.0f);
     float below = hdrp_max(-upper - 2.0f, 0.0f);
     hdrp_v2 s = hdrp_v2_make(left / n, (left + 2.0f) / n);

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #define HDRP_ENV_IMPLEMENTATION
-#include "hdrp_env.h"
+#include "env_brute_force.h"
 
 #define PI 3.14159265358979323846
 
@@ -141,55 +141,6 @@ static void free_sky(sky* s)
     free(s->memory);
 }
 
-/* Mean of radiance under the lobe D(h) n.l / 4 of GGX, straight from its definition, over every
- * texel, cut into parts x parts where the lobe or the horizon need it. For alpha 1 times pi this
- * is the irradiance. */
-static void brute_force(const sky* s, hdrp_v3 axis, double alpha, double result[3])
-{
-    double n[3] = {(double)axis.x, (double)axis.y, (double)axis.z}, sum[4] = {0.0, 0.0, 0.0, 0.0};
-    double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    uint32_t size = s->image.width;
-    double a2 = alpha * alpha, wide = 2.0 / size;
-    for (uint32_t k = 0; k < 6u * size * size; ++k) {
-        const float* c = s->image.texels + 3u * k;
-        uint32_t face = k / size / size, x = k % size, y = k / size % size;
-        hdrp_v3 m = hdrp_env_point_from_cube(face, ((float)x + 0.5f) * (float)wide - 1.0f,
-                                             ((float)y + 0.5f) * (float)wide - 1.0f);
-        double middle = (double)hdrp_v3_dot(m, axis) / (double)hdrp_v3_length(m);
-        double q = fmax(2.0 - 2.0 * middle, 0.0);
-        bool narrow = q < 60.0 * wide * wide || (q < 16.0 * a2 && a2 < 25.0 * wide * wide);
-        int parts = narrow || fabs(middle) < wide ? 4 : 2;
-        if (middle < -wide) {
-            continue;
-        }
-        for (int part = 0; part < parts * parts; ++part) {
-            double u = (x + (part % parts + 0.5) / parts) * wide - 1.0;
-            double v = (y + (part / parts + 0.5) / parts) * wide - 1.0;
-            hdrp_v3 p = hdrp_env_point_from_cube(face, (float)u, (float)v);
-            double l[3] = {(double)p.x, (double)p.y, (double)p.z};
-            double r2 = l[0] * l[0] + l[1] * l[1] + l[2] * l[2], r = sqrt(r2), h2 = 0.0, n_dot_h;
-            double n_dot_l = (l[0] * n[0] + l[1] * n[1] + l[2] * n[2]) / (r * length);
-            if (n_dot_l <= 0.0) {
-                continue;
-            }
-            for (int i = 0; i < 3; ++i) {
-                double h = l[i] / r + n[i] / length;
-                h2 += h * h;
-            }
-            n_dot_h = (1.0 + n_dot_l) / sqrt(h2);
-            double t = n_dot_h * n_dot_h * (a2 - 1.0) + 1.0;
-            double weight = a2 / (PI * t * t) * n_dot_l / (parts * parts * r2 * r);
-            for (int i = 0; i < 3; ++i) {
-                sum[i] += weight * (double)c[i];
-            }
-            sum[3] += weight;
-        }
-    }
-    for (int i = 0; i < 3; ++i) {
-        result[i] = sum[i] / sum[3];
-    }
-}
-
 /* Largest error of the channels, against the largest channel. */
 static double worst_channel(hdrp_v3 v, const double reference[3])
 {
@@ -256,7 +207,7 @@ static void prefilter_error(acc* a, sky_kind kind)
                 hdrp_v4 texel =
                     s.env.specular.texels[hdrp_i_env_level_offset(32u, level) + row * n + x];
                 hdrp_v3 axis = hdrp_i_env_texel_centre(row / n, x, row % n, n);
-                brute_force(&s, axis, r * r, reference);
+                env_brute_force(&s.image, axis, r * r, reference);
                 ACC_ADD(a, worst_channel(hdrp_v3_from_v4(texel), reference),
                         "sky %d level %u row %u texel %u", i, level, row, x);
             }
@@ -312,7 +263,7 @@ static void add_irradiance_errors(acc* a, const sky* s, const hdrp_v3* normal, c
     double error[32], largest = 0.0;
     for (int k = 0; k < count; ++k) {
         double reference[3];
-        brute_force(s, normal[k], 1.0, reference);
+        env_brute_force(&s->image, normal[k], 1.0, reference);
         error[k] = fmax(fabs((double)e[k].x - PI * reference[0]),
                         fmax(fabs((double)e[k].y - PI * reference[1]),
                              fabs((double)e[k].z - PI * reference[2])));
@@ -370,7 +321,7 @@ static void specular_error(acc* a)
             double r = acc_uniform(a, 0.05, 1.0), reference[3];
             hdrp_v3 axis = any_normal(a);
             hdrp_v3 v = hdrp_env_specular(&s.env, axis, (float)r);
-            brute_force(&s, axis, r * r, reference);
+            env_brute_force(&s.image, axis, r * r, reference);
             for (int c = 0; c < 3; ++c) {
                 double measured = (double)(c == 0 ? v.x : (c == 1 ? v.y : v.z));
                 ACC_ADD(a, fabs(measured - reference[c]) / stats.average_nits,
