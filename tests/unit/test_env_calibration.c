@@ -221,6 +221,34 @@ static void the_sun_is_found_and_removed(void** state)
     }
 }
 
+/* A faint sun among dark texels: they are no light to take out, and stay. */
+static void dark_texels_near_the_sun_stay(void** state)
+{
+    (void)state;
+    hdrp_env_image image = test_image(HDRP_ENV_LATLONG, 180u, 90u, 10.0f);
+    hdrp_env_stats before = {0}, after = {0};
+    hdrp_env_sun sun = {0};
+    for (uint32_t y = 28; y < 33; ++y) {
+        for (uint32_t x = 88; x < 93; ++x) {
+            float v = x == 90u && y == 30u ? 500.0f : 2.0f;
+            image.texels[3u * (180u * y + x)] = v;
+            image.texels[3u * (180u * y + x) + 1u] = v;
+            image.texels[3u * (180u * y + x) + 2u] = v;
+        }
+    }
+    assert_int_equal(hdrp_env_measure(&image, &before), HDRP_OK);
+    assert_int_equal(hdrp_env_find_sun(&image, 0.1f, &sun), HDRP_OK);
+    assert_int_equal(hdrp_env_remove_sun(&image, &sun), HDRP_OK);
+    assert_int_equal(hdrp_env_measure(&image, &after), HDRP_OK);
+    test_near(
+        (after.illuminance_lux + (double)(hdrp_luminance(sun.illuminance_lux) * sun.direction.y)) /
+            before.illuminance_lux,
+        1.0, 1e-6);
+    assert_true(image.texels[3u * (180u * 30u + 89u)] == 2.0f);
+    assert_true(sun.illuminance_lux.y > 0.0f && image.texels[3u * (180u * 30u + 90u)] <= 10.0f);
+    free(image.texels);
+}
+
 static void an_even_sky_has_no_sun(void** state)
 {
     (void)state;
@@ -261,6 +289,7 @@ int main(void)
         cmocka_unit_test(no_multiplier_for_black_invalid_or_nonsense),
         cmocka_unit_test(errors_leave_results_alone),
         cmocka_unit_test(the_sun_is_found_and_removed),
+        cmocka_unit_test(dark_texels_near_the_sun_stay),
         cmocka_unit_test(an_even_sky_has_no_sun),
         cmocka_unit_test(the_smallest_images_have_a_sun_or_none),
     };
