@@ -688,14 +688,16 @@ static hdrp_result hdrp_i_image_check_rows(const hdrp_env_image* image, uint32_t
 }
 
 /* The three channels of a texel as stored. */
+static float* hdrp_i_image_at(const hdrp_env_image* image, uint32_t face, uint32_t y, uint32_t x)
+{
+    return image->texels +
+           (face * hdrp_i_image_face_stride(image) + y * hdrp_i_image_row_stride(image) +
+            x * hdrp_i_image_texel_stride(image));
+}
+
 static float* hdrp_i_image_stored(const hdrp_env_image* image, uint32_t row, uint32_t x)
 {
-    size_t offset = x * hdrp_i_image_texel_stride(image);
-    if (image->kind == HDRP_ENV_CUBE) {
-        offset += row / image->height * hdrp_i_image_face_stride(image);
-        row %= image->height;
-    }
-    return image->texels + (offset + row * hdrp_i_image_row_stride(image));
+    return hdrp_i_image_at(image, row / image->height, row % image->height, x);
 }
 
 static float hdrp_i_image_scale(const hdrp_env_image* image)
@@ -703,13 +705,18 @@ static float hdrp_i_image_scale(const hdrp_env_image* image)
     return image->nits_per_unit > 0.0f ? image->nits_per_unit : 1.0f;
 }
 
-HDRP_API hdrp_v3 hdrp_env_image_texel(const hdrp_env_image* image, uint32_t row, uint32_t x)
+static hdrp_v3 hdrp_i_image_read(const hdrp_env_image* image, uint32_t face, uint32_t y, uint32_t x)
 {
-    const float* c = hdrp_i_image_stored(image, row, x);
+    const float* c = hdrp_i_image_at(image, face, y, x);
     float k = hdrp_i_image_scale(image);
     return hdrp_v3_make(hdrp_clamp(c[0] * k, 0.0f, HDRP_I_IMAGE_NITS_MAX),
                         hdrp_clamp(c[1] * k, 0.0f, HDRP_I_IMAGE_NITS_MAX),
                         hdrp_clamp(c[2] * k, 0.0f, HDRP_I_IMAGE_NITS_MAX));
+}
+
+HDRP_API hdrp_v3 hdrp_env_image_texel(const hdrp_env_image* image, uint32_t row, uint32_t x)
+{
+    return hdrp_i_image_read(image, row / image->height, row % image->height, x);
 }
 
 static double hdrp_i_image_luminance(const double rgb[3])
@@ -760,8 +767,8 @@ static hdrp_v3 hdrp_i_image_read_across(const hdrp_env_image* image, uint32_t fa
     place = hdrp_env_cube_from_direction(p);
     x = (int)(place.u * size);
     y = (int)(place.v * size);
-    return hdrp_env_image_texel(image, place.face * image->height + (uint32_t)(y < n ? y : n - 1),
-                                (uint32_t)(x < n ? x : n - 1));
+    return hdrp_i_image_read(image, place.face, (uint32_t)(y < n ? y : n - 1),
+                             (uint32_t)(x < n ? x : n - 1));
 }
 
 /* Radiance of a texel up to one step outside the picture or the face. */
@@ -771,22 +778,21 @@ static hdrp_v3 hdrp_i_image_read_wrapped(const hdrp_env_image* image, uint32_t f
     int h = (int)image->height;
     int in_x = x < 0 ? 0 : (x >= w ? w - 1 : x);
     int in_y = y < 0 ? 0 : (y >= h ? h - 1 : y);
+    if (x == in_x && y == in_y) {
+        return hdrp_i_image_read(image, face, (uint32_t)y, (uint32_t)x);
+    }
     if (image->kind == HDRP_ENV_LATLONG) {
         /* Across a pole is half way around. */
         x = (x + w + (y == in_y ? 0 : w / 2)) % w;
-        return hdrp_env_image_texel(image, (uint32_t)in_y, (uint32_t)x);
+        return hdrp_i_image_read(image, face, (uint32_t)in_y, (uint32_t)x);
     }
     if (x != in_x && y != in_y) {
-        hdrp_v3 sum =
-            hdrp_env_image_texel(image, face * image->height + (uint32_t)in_y, (uint32_t)in_x);
+        hdrp_v3 sum = hdrp_i_image_read(image, face, (uint32_t)in_y, (uint32_t)in_x);
         sum = hdrp_v3_add(sum, hdrp_i_image_read_across(image, face, x, in_y));
         sum = hdrp_v3_add(sum, hdrp_i_image_read_across(image, face, in_x, y));
         return hdrp_v3_scale(sum, 1.0f / 3.0f);
     }
-    if (x != in_x || y != in_y) {
-        return hdrp_i_image_read_across(image, face, x, y);
-    }
-    return hdrp_env_image_texel(image, face * image->height + (uint32_t)y, (uint32_t)x);
+    return hdrp_i_image_read_across(image, face, x, y);
 }
 
 static hdrp_env_place hdrp_i_image_place(const hdrp_env_image* image, hdrp_v3 direction)
