@@ -405,7 +405,7 @@ def matching(code, start, pair):
 
 
 # A topic that outgrew its header stands in one of its own and keeps the names: topic -> header.
-SPLIT_FROM = {"brdf_lobes": "brdf"}
+SPLIT_FROM = {"brdf_lobes": "brdf", "env_image": "env"}
 
 
 class Header:
