@@ -231,7 +231,7 @@ HDRP_FN hdrp_brdf_data hdrp_brdf_data_from_surface(hdrp_brdf_surface s)
  *  specular  [0,1]
  *  returns   [0,1]  m with diffuse = base (1 - m), specular = 0.04 (1 - m) + base m for some base
  *  edges     1 for a black diffuse colour, 0 for a specular colour of 0.04 and less
- *  error     <= 6e-7 absolute, in the specular colour of the result where one exists
+ *  error     <= 2.5e-6 absolute, in the specular colour of the result where one exists
  *            @accuracy brdf_metallic_from_colors
  *  source    both equations of Burley 2012, "Physically-Based Shading at Disney", solved for m
  *  note      the smaller root of 0.04 x^2 - (specular + diffuse) x + diffuse with x = 1 - m, in the
@@ -242,6 +242,14 @@ HDRP_FN float hdrp_brdf_metallic_from_colors(float diffuse, float specular)
     float sum = s + diffuse;
     float root = hdrp_sqrt(hdrp_max(sum * sum - 4.0f * HDRP_BRDF_COAT_FRESNEL0 * diffuse, 0.0f));
     return hdrp_saturate(1.0f - 2.0f * diffuse / (sum + root));
+}
+
+/** Base colour whose diffuse and specular parts come nearest to two values, by least squares. */
+HDRP_FN float hdrp_i_brdf_nearest_base(float diffuse, float specular, float metallic)
+{
+    float rest = 1.0f - metallic;
+    float base = diffuse * rest + (specular - HDRP_BRDF_COAT_FRESNEL0 * rest) * metallic;
+    return hdrp_saturate(base / (rest * rest + metallic * metallic));
 }
 
 /** Engine data of a surface in the diffuse and specular colour parametrisation.
@@ -259,13 +267,16 @@ HDRP_FN hdrp_brdf_data hdrp_brdf_data_from_diffuse_specular(hdrp_brdf_surface s,
                                                             hdrp_v3 specular_color)
 {
     hdrp_brdf_data d = hdrp_brdf_data_from_surface(s);
-    d.diffuse_color = hdrp_v3_saturate(diffuse_color);
-    d.fresnel0 = hdrp_v3_saturate(specular_color);
-    d.metallic = hdrp_brdf_metallic_from_colors(hdrp_v3_max_component(d.diffuse_color),
-                                                hdrp_v3_max_component(d.fresnel0));
-    d.base_color = hdrp_v3_saturate(hdrp_v3_lerp(
-        hdrp_v3_scale(d.diffuse_color, 1.0f / hdrp_max(1.0f - d.metallic, HDRP_FLT_EPSILON)),
-        d.fresnel0, d.metallic * d.metallic));
+    hdrp_v3 f0 = hdrp_v3_saturate(specular_color);
+    hdrp_v3 diffuse = hdrp_v3_saturate(diffuse_color);
+    float m =
+        hdrp_brdf_metallic_from_colors(hdrp_v3_max_component(diffuse), hdrp_v3_max_component(f0));
+    d.diffuse_color = diffuse;
+    d.fresnel0 = f0;
+    d.metallic = m;
+    d.base_color = hdrp_v3_make(hdrp_i_brdf_nearest_base(diffuse.x, f0.x, m),
+                                hdrp_i_brdf_nearest_base(diffuse.y, f0.y, m),
+                                hdrp_i_brdf_nearest_base(diffuse.z, f0.z, m));
     return d;
 }
 
@@ -305,19 +316,20 @@ HDRP_FN hdrp_v3 hdrp_brdf_dielectric_fresnel0(float ior, hdrp_v3 specular_color,
 
 /* What the lights of a pixel share. Made by hdrp_brdf_lit_view_make. */
 struct hdrp_brdf_lit_view {
-    hdrp_v3 v;                     /* unit */
-    float n_dot_v;                 /* [HDRP_BRDF_N_DOT_V_MIN,1] */
-    hdrp_brdf_alphas alphas;       /* of the base lobe */
-    hdrp_v3 fresnel0;              /* [0,1] of the base, under its film and coat */
-    float fresnel90;               /* [0,1] */
-    hdrp_v3 compensation;          /* [1,20] multiscattering factor of the base lobe */
-    hdrp_v3 specular_albedo;       /* [0,1] of the base lobe, all bounces */
-    hdrp_brdf_fgd_fit diffuse_fit; /* couples the diffuse lobe to the base lobe */
-    hdrp_v3 diffuse;               /* [0,7] 1/sr, what all lights share of the diffuse lobe */
-    hdrp_v3 diffuse_albedo;        /* [0,1] of the diffuse lobe */
-    hdrp_v3 transmitted;           /* [0,1] colour of refracted light, before the Fresnel term */
-    float coat_n_dot_v;            /* [HDRP_BRDF_N_DOT_V_MIN,1] */
-    float below_coat;              /* [0,1] share of light from v that the coat lets through */
+    hdrp_v3 v;                 /* unit */
+    float n_dot_v;             /* [HDRP_BRDF_N_DOT_V_MIN,1] */
+    hdrp_brdf_alphas alphas;   /* of the base lobe */
+    hdrp_v3 fresnel0;          /* [0,1] of the base, under its film and coat */
+    float fresnel90;           /* [0,1] */
+    hdrp_brdf_fgd_fit fit;     /* of the base lobe */
+    hdrp_brdf_bounces bounces; /* of the base lobe */
+    float multiscatter;        /* [0,inf) 1/sr, what all lights share of hdrp_brdf_multiscatter */
+    hdrp_v3 diffuse;           /* [0,inf) 1/sr, what all lights share of hdrp_brdf_diffuse */
+    hdrp_v3 specular_albedo;   /* [0,1] of the base lobe, all bounces */
+    hdrp_v3 diffuse_albedo;    /* [0,1] of the diffuse lobe on the side of v */
+    hdrp_v3 transmitted;       /* [0,1] colour of refracted light, before the Fresnel term */
+    float coat_n_dot_v;        /* [HDRP_BRDF_N_DOT_V_MIN,1] */
+    float below_coat;          /* [0,1] share of light from v that the coat lets through */
 };
 HDRP_TYPEDEF(hdrp_brdf_lit_view)
 
@@ -363,19 +375,19 @@ HDRP_FN hdrp_v3 hdrp_i_brdf_lit_bare_fresnel0(hdrp_brdf_data d, hdrp_u32 feature
     return d.fresnel0;
 }
 
-/** F0 of the base under film and coat. A film has no F0: it gets that of the Schlick curve through
- *  its reflectance at this view, so that lights from elsewhere follow a plausible curve. */
-HDRP_FN hdrp_v3 hdrp_i_brdf_lit_fresnel0(hdrp_brdf_data d, float n_dot_v, hdrp_u32 features)
+/* Most grazing view for which a film is evaluated. Beyond, its phase hardly changes, and a Schlick
+ * curve through its reflectance would say nothing about other angles. */
+#define HDRP_I_BRDF_FILM_N_DOT_V_MIN 0.25f
+
+/** F0 of the film over its base. A film has none: it gets that of the Schlick curve through its
+ *  reflectance at this view, so that lights from elsewhere follow a plausible curve. */
+HDRP_FN hdrp_v3 hdrp_i_brdf_lit_film_fresnel0(hdrp_brdf_data d, float n_dot_v, hdrp_u32 features)
 {
-    hdrp_v3 f0 = hdrp_i_brdf_lit_bare_fresnel0(d, features);
-    if ((features & HDRP_BRDF_FEATURE_IRIDESCENCE) != 0u) {
-        hdrp_v3 f = hdrp_i_brdf_lit_film(d, n_dot_v, features);
-        hdrp_v3 film = hdrp_v3_make(hdrp_brdf_fresnel0_from_schlick(f.x, n_dot_v),
-                                    hdrp_brdf_fresnel0_from_schlick(f.y, n_dot_v),
-                                    hdrp_brdf_fresnel0_from_schlick(f.z, n_dot_v));
-        f0 = hdrp_v3_lerp(f0, film, d.film_mask);
-    }
-    return f0;
+    float u = hdrp_max(n_dot_v, HDRP_I_BRDF_FILM_N_DOT_V_MIN);
+    hdrp_v3 f = hdrp_i_brdf_lit_film(d, u, features);
+    return hdrp_v3_make(hdrp_brdf_fresnel0_from_schlick(f.x, u),
+                        hdrp_brdf_fresnel0_from_schlick(f.y, u),
+                        hdrp_brdf_fresnel0_from_schlick(f.z, u));
 }
 
 /** The widths of the base lobe. */
@@ -390,52 +402,112 @@ HDRP_FN hdrp_brdf_alphas hdrp_i_brdf_lit_alphas(hdrp_brdf_data d, hdrp_u32 featu
     return a;
 }
 
+/** v, or where n does not face it the direction nearest to v that n does face. */
+HDRP_FN hdrp_v3 hdrp_i_brdf_facing(hdrp_v3 v, hdrp_v3 n)
+{
+    float missing = HDRP_BRDF_N_DOT_V_MIN - hdrp_v3_dot(n, v);
+    if (missing > 0.0f) {
+        return hdrp_normalize_or(hdrp_v3_mad(v, n, missing), n);
+    }
+    return v;
+}
+
+/** w with the Fresnel term of the base. */
+HDRP_FN hdrp_brdf_lit_view hdrp_i_brdf_lit_view_set_fresnel(hdrp_brdf_lit_view w, hdrp_brdf_data d,
+                                                            hdrp_u32 features)
+{
+    w.fresnel0 = hdrp_i_brdf_lit_bare_fresnel0(d, features);
+    w.fresnel90 = hdrp_brdf_fresnel90(w.fresnel0);
+    if ((features & HDRP_BRDF_FEATURE_IRIDESCENCE) != 0u) {
+        w.fresnel0 = hdrp_v3_lerp(w.fresnel0, hdrp_i_brdf_lit_film_fresnel0(d, w.n_dot_v, features),
+                                  d.film_mask);
+        w.fresnel90 = hdrp_lerp(w.fresnel90, 1.0f, d.film_mask);
+    }
+    return w;
+}
+
+/** w with what all lights share of the lobes of the base. */
+HDRP_FN hdrp_brdf_lit_view hdrp_i_brdf_lit_view_set_lobes(hdrp_brdf_lit_view w, hdrp_brdf_data d,
+                                                          hdrp_brdf_fgd fgd)
+{
+    hdrp_brdf_fgd own = hdrp_brdf_fgd_from_fit(w.fit, w.n_dot_v);
+    hdrp_v3 below = hdrp_v3_sub(hdrp_v3_splat(1.0f), w.fresnel0);
+    hdrp_v3 share, mean;
+    w.bounces = hdrp_brdf_bounces_make(w.fit, w.fresnel0, w.fresnel90);
+    w.multiscatter = (1.0f - own.albedo) * HDRP_INV_PI / w.fit.mean_loss;
+    w.specular_albedo =
+        hdrp_v3_saturate(hdrp_v3_mad(hdrp_brdf_specular_albedo(fgd, w.fresnel0, w.fresnel90),
+                                     w.bounces.reflected, 1.0f - hdrp_saturate(fgd.albedo)));
+    share = hdrp_brdf_diffuse_share(own, w.bounces, w.fresnel90);
+    mean = hdrp_brdf_diffuse_share_mean(w.fit, w.bounces, w.fresnel90);
+    w.diffuse_albedo = hdrp_v3_mul(hdrp_v3_mul(d.diffuse_color, below), share);
+    w.diffuse = hdrp_v3_make(HDRP_INV_PI * w.diffuse_albedo.x / mean.x,
+                             HDRP_INV_PI * w.diffuse_albedo.y / mean.y,
+                             HDRP_INV_PI * w.diffuse_albedo.z / mean.z);
+    return w;
+}
+
+/** w with its diffuse lobe weakened. */
+HDRP_FN hdrp_brdf_lit_view hdrp_i_brdf_lit_view_scale_diffuse(hdrp_brdf_lit_view w, hdrp_v3 scale)
+{
+    w.diffuse = hdrp_v3_mul(w.diffuse, scale);
+    w.diffuse_albedo = hdrp_v3_mul(w.diffuse_albedo, scale);
+    return w;
+}
+
+/** Transmittance of the slab. That of a wall without one shares the field. */
+HDRP_FN hdrp_v3 hdrp_i_brdf_slab_transmittance(hdrp_brdf_data d)
+{
+    return hdrp_v3_scale(d.transmittance,
+                         hdrp_i_brdf_feature(1.0f, d.features, HDRP_BRDF_FEATURE_TRANSMISSION));
+}
+
+/** Share of diffuse light that stays in front of a thin slab: what crosses it cannot be reflected.
+ *  1 / (1 + color transmittance) keeps both together below 1, leaves dark or dense slabs as they
+ *  are, and splits white light evenly where the slab is thinnest. */
+HDRP_FN hdrp_v3 hdrp_i_brdf_slab_share(hdrp_v3 diffuse_color, hdrp_v3 transmittance)
+{
+    return hdrp_v3_make(1.0f / (1.0f + diffuse_color.x * transmittance.x),
+                        1.0f / (1.0f + diffuse_color.y * transmittance.y),
+                        1.0f / (1.0f + diffuse_color.z * transmittance.z));
+}
+
 /** What the lights of a pixel share.
  *  d         valid  material
  *  v         unit   towards the viewer
- *  fgd       valid  at the cosine of v and d.perceptual_roughness: from a table for a white furnace
- *            that stays white, or by hdrp_brdf_fgd_fast
+ *  fgd       valid  at the cosine of v and d.perceptual_roughness, by hdrp_brdf_fgd_lookup or
+ *            hdrp_brdf_fgd_fast; only hdrp_brdf_lit_env_make and hdrp_brdf_lit_pdf depend on it
  *  features  any    HDRP_BRDF_FEATURE_... that the material may have, HDRP_BRDF_LIT_EXACT
  *  returns   valid
- *  edges     a v below the surface is shaded as if it were just above
+ *  edges     a v below the surface is bent to just above it, as normal maps make them
  *  error     none: composed of the functions above
  *  source    Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
  *            Definition Render Pipeline", slides on the Lit shader
- *  note      an anisotropic lobe uses the directional albedo of the isotropic one of its mean
- *            width, as the source does; its furnace is off by up to 12 % at anisotropy +-1 */
+ *  note      light that crosses a thin slab is missing from its front, unlike in the source */
 HDRP_FN hdrp_brdf_lit_view hdrp_brdf_lit_view_make(hdrp_brdf_data d, hdrp_v3 v, hdrp_brdf_fgd fgd,
                                                    hdrp_u32 features)
 {
     hdrp_brdf_lit_view w;
-    hdrp_v3 share;
-    hdrp_v3 mean;
-    w.v = v;
-    w.n_dot_v = hdrp_clamp(hdrp_v3_dot(d.normal, v), HDRP_BRDF_N_DOT_V_MIN, 1.0f);
+    w.v = hdrp_i_brdf_facing(v, d.normal);
+    w.n_dot_v = hdrp_clamp(hdrp_v3_dot(d.normal, w.v), HDRP_BRDF_N_DOT_V_MIN, 1.0f);
     w.alphas = hdrp_i_brdf_lit_alphas(d, features);
-    w.fresnel0 = hdrp_i_brdf_lit_fresnel0(d, w.n_dot_v, features);
-    w.fresnel90 = hdrp_brdf_fresnel90(w.fresnel0);
-    w.compensation = hdrp_brdf_energy_compensation(fgd, w.fresnel0);
-    w.specular_albedo = hdrp_v3_saturate(
-        hdrp_v3_mul(hdrp_brdf_specular_albedo(fgd, w.fresnel0, w.fresnel90), w.compensation));
-    /* The narrower width reflects most at grazing: coupled to it, diffuse light never gains. */
-    w.diffuse_fit = hdrp_brdf_fgd_fit_make(hdrp_sqrt(hdrp_min(w.alphas.t, w.alphas.b)));
-    share = hdrp_brdf_diffuse_share(w.diffuse_fit, w.n_dot_v, w.fresnel0, w.fresnel90);
-    mean = hdrp_brdf_diffuse_share_mean(w.diffuse_fit, w.fresnel0, w.fresnel90);
-    w.diffuse_albedo = hdrp_v3_mul(
-        hdrp_v3_mul(d.diffuse_color, hdrp_v3_sub(hdrp_v3_splat(1.0f), w.fresnel0)), share);
+    w.fit = hdrp_brdf_fgd_fit_make_aniso(w.alphas);
+    w = hdrp_i_brdf_lit_view_set_fresnel(w, d, features);
+    w = hdrp_i_brdf_lit_view_set_lobes(w, d, fgd);
+    if ((features & HDRP_BRDF_FEATURE_TRANSMISSION) != 0u) {
+        w = hdrp_i_brdf_lit_view_scale_diffuse(
+            w, hdrp_i_brdf_slab_share(d.diffuse_color, hdrp_i_brdf_slab_transmittance(d)));
+    }
     w.transmitted = hdrp_v3_splat(0.0f);
     if ((features & HDRP_BRDF_FEATURE_REFRACTION) != 0u) {
-        w.diffuse_albedo = hdrp_v3_scale(w.diffuse_albedo, 1.0f - d.transmission);
+        w = hdrp_i_brdf_lit_view_scale_diffuse(w, hdrp_v3_splat(1.0f - d.transmission));
         w.transmitted =
             hdrp_v3_scale(hdrp_v3_mul(d.diffuse_color, d.transmittance), d.transmission);
     }
-    w.diffuse = hdrp_v3_make(HDRP_INV_PI * w.diffuse_albedo.x / mean.x,
-                             HDRP_INV_PI * w.diffuse_albedo.y / mean.y,
-                             HDRP_INV_PI * w.diffuse_albedo.z / mean.z);
     w.coat_n_dot_v = w.n_dot_v;
     w.below_coat = 1.0f;
     if ((features & HDRP_BRDF_FEATURE_CLEAR_COAT) != 0u) {
-        w.coat_n_dot_v = hdrp_clamp(hdrp_v3_dot(d.coat_normal, v), HDRP_BRDF_N_DOT_V_MIN, 1.0f);
+        w.coat_n_dot_v = hdrp_clamp(hdrp_v3_dot(d.coat_normal, w.v), HDRP_BRDF_N_DOT_V_MIN, 1.0f);
         w.below_coat = hdrp_i_brdf_below_coat(d.coat_mask, w.coat_n_dot_v);
     }
     return w;
@@ -463,8 +535,8 @@ HDRP_FN hdrp_v3 hdrp_i_brdf_lit_f(hdrp_brdf_data d, hdrp_brdf_lit_view w, float 
 {
     if ((features & HDRP_BRDF_LIT_EXACT) != 0u &&
         (features & HDRP_BRDF_FEATURE_IRIDESCENCE) != 0u) {
-        hdrp_v3 bare = hdrp_brdf_f_schlick_rgb(hdrp_i_brdf_lit_bare_fresnel0(d, features),
-                                               w.fresnel90, l_dot_h);
+        hdrp_v3 f0 = hdrp_i_brdf_lit_bare_fresnel0(d, features);
+        hdrp_v3 bare = hdrp_brdf_f_schlick_rgb(f0, hdrp_brdf_fresnel90(f0), l_dot_h);
         return hdrp_v3_lerp(bare, hdrp_i_brdf_lit_film(d, l_dot_h, features), d.film_mask);
     }
     return hdrp_brdf_f_schlick_rgb(w.fresnel0, w.fresnel90, l_dot_h);
@@ -485,8 +557,8 @@ HDRP_FN hdrp_v3 hdrp_i_brdf_lit_refracted(hdrp_brdf_data d, hdrp_brdf_lit_view w
 {
     float alpha = hdrp_brdf_alpha_from_perceptual_roughness(
         hdrp_brdf_refraction_perceptual_roughness(d.perceptual_roughness, d.ior));
-    return hdrp_v3_scale(w.transmitted, hdrp_brdf_btdf_thin_ggx(d.normal, w.v, l, alpha,
-                                                                hdrp_v3_max_component(w.fresnel0)));
+    return hdrp_v3_mul(w.transmitted,
+                       hdrp_brdf_btdf_thin_ggx(d.normal, w.v, l, alpha, w.fresnel0, w.fresnel90));
 }
 
 /** The Lit model for one light direction.
@@ -495,6 +567,7 @@ HDRP_FN hdrp_v3 hdrp_i_brdf_lit_refracted(hdrp_brdf_data d, hdrp_brdf_lit_view w
  *  l         unit   towards the light
  *  features  any    as for hdrp_brdf_lit_view_make
  *  returns   valid  times the light's illuminance it is reflected luminance
+ *  requires  hdrp_abs(hdrp_v3_dot(d.normal, w.v) - w.n_dot_v) < 1e-5f; w was made from d
  *  edges     black below the horizon, but for light through a thin slab or wall
  *  error     none: composed of the functions above
  *  source    Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
@@ -512,13 +585,13 @@ HDRP_FN hdrp_brdf_lit hdrp_brdf_lit_eval(hdrp_brdf_data d, hdrp_brdf_lit_view w,
     float l_dot_h = hdrp_saturate(hdrp_v3_dot(l, h));
     hdrp_v3 f = hdrp_i_brdf_lit_f(d, w, l_dot_h, features);
     float dv = hdrp_i_brdf_lit_dv(d, w, l, h, front, features) * front;
-    hdrp_v3 share =
-        hdrp_brdf_diffuse_share(w.diffuse_fit, hdrp_abs(n_dot_l), w.fresnel0, w.fresnel90);
-    hdrp_v3 diffuse = hdrp_v3_mul(w.diffuse, share);
-    r.specular = hdrp_v3_scale(hdrp_v3_mul(f, w.compensation), dv);
+    hdrp_brdf_fgd fgd = hdrp_brdf_fgd_from_fit(w.fit, hdrp_abs(n_dot_l));
+    hdrp_v3 diffuse = hdrp_v3_mul(w.diffuse, hdrp_brdf_diffuse_share(fgd, w.bounces, w.fresnel90));
+    float again = w.multiscatter * (1.0f - fgd.albedo) * front;
+    r.specular = hdrp_v3_mad(hdrp_v3_scale(f, dv), w.bounces.reflected, again);
     r.diffuse = hdrp_v3_scale(diffuse, front);
     if ((features & HDRP_BRDF_FEATURE_TRANSMISSION) != 0u) {
-        hdrp_v3 through = hdrp_v3_mul(diffuse, d.transmittance);
+        hdrp_v3 through = hdrp_v3_mul(diffuse, hdrp_i_brdf_slab_transmittance(d));
         r.diffuse = hdrp_v3_mad(r.diffuse, through, hdrp_saturate(-n_dot_l));
     }
     if ((features & HDRP_BRDF_FEATURE_REFRACTION) != 0u) {
@@ -580,16 +653,38 @@ HDRP_FN hdrp_v3 hdrp_brdf_dominant_direction(hdrp_v3 n, hdrp_v3 reflected, float
 
 /** e with the light that a refractive material lets through. */
 HDRP_FN hdrp_brdf_lit_env hdrp_i_brdf_lit_env_set_transmitted(hdrp_brdf_lit_env e, hdrp_brdf_data d,
-                                                              hdrp_brdf_lit_view w, float below)
+                                                              hdrp_brdf_lit_view w)
 {
-    hdrp_v3 f = hdrp_brdf_f_schlick_rgb(w.fresnel0, w.fresnel90, w.n_dot_v);
-    e.transmitted_perceptual_roughness =
-        hdrp_brdf_refraction_perceptual_roughness(d.perceptual_roughness, d.ior);
+    float p = hdrp_brdf_refraction_perceptual_roughness(d.perceptual_roughness, d.ior);
+    hdrp_brdf_fgd fgd = hdrp_brdf_fgd_fast(w.n_dot_v, p);
+    hdrp_v3 reflected = hdrp_brdf_specular_albedo(fgd, w.fresnel0, w.fresnel90);
+    e.transmitted_perceptual_roughness = p;
     e.transmitted_weight =
-        hdrp_v3_scale(hdrp_v3_mul(w.transmitted, hdrp_v3_sub(hdrp_v3_splat(1.0f), f)), below);
+        hdrp_v3_mul(w.transmitted, hdrp_v3_sub(hdrp_v3_splat(fgd.albedo), reflected));
     if (d.volume_thickness_m > 0.0f) {
         e.transmitted_direction = hdrp_brdf_refract(w.v, d.normal, 1.0f / d.ior).direction;
     }
+    return e;
+}
+
+/* Cosine-weighted mean of the coat's Fresnel term over the hemisphere, (1 + 20 F0) / 21. */
+#define HDRP_I_BRDF_COAT_FRESNEL_MEAN (1.8f / 21.0f)
+
+/** e with the coat, which dims what lies below it. Light of the specular lobe is taken to meet the
+ *  coat at the angles at which it meets the microfacets, diffuse light at all angles. */
+HDRP_FN hdrp_brdf_lit_env hdrp_i_brdf_lit_env_set_coat(hdrp_brdf_lit_env e, hdrp_brdf_data d,
+                                                       hdrp_brdf_lit_view w)
+{
+    hdrp_brdf_fgd coat = hdrp_brdf_fgd_fast(w.coat_n_dot_v, d.coat_perceptual_roughness);
+    hdrp_brdf_fgd base = hdrp_brdf_fgd_from_fit(w.fit, w.n_dot_v);
+    float weight = base.schlick / base.albedo;
+    float lobe = 1.0f - d.coat_mask * hdrp_lerp(HDRP_BRDF_COAT_FRESNEL0, 1.0f, weight);
+    float all_around = 1.0f - d.coat_mask * HDRP_I_BRDF_COAT_FRESNEL_MEAN;
+    e.coat_direction = hdrp_normalize_or(hdrp_i_brdf_reflect(w.v, d.coat_normal), d.normal);
+    e.coat_weight = d.coat_mask * hdrp_lerp(coat.schlick, coat.albedo, HDRP_BRDF_COAT_FRESNEL0);
+    e.specular_weight = hdrp_v3_scale(e.specular_weight, w.below_coat * lobe);
+    e.transmitted_weight = hdrp_v3_scale(e.transmitted_weight, w.below_coat * lobe);
+    e.diffuse_weight = hdrp_v3_scale(e.diffuse_weight, w.below_coat * all_around);
     return e;
 }
 
@@ -598,6 +693,7 @@ HDRP_FN hdrp_brdf_lit_env hdrp_i_brdf_lit_env_set_transmitted(hdrp_brdf_lit_env 
  *  w         valid  of the same material and features
  *  features  any    as for hdrp_brdf_lit_view_make
  *  returns   valid
+ *  requires  hdrp_abs(hdrp_v3_dot(d.normal, w.v) - w.n_dot_v) < 1e-5f; w was made from d
  *  edges     weights of absent features are 0
  *  error     none: composed of the functions above
  *  source    Karis 2013, "Real Shading in Unreal Engine 4", section "Image-Based Lighting";
@@ -608,7 +704,6 @@ HDRP_FN hdrp_brdf_lit_env hdrp_brdf_lit_env_make(hdrp_brdf_data d, hdrp_brdf_lit
 {
     hdrp_brdf_lit_env e;
     hdrp_brdf_env_lobe lobe;
-    float below = w.below_coat * w.below_coat;
     lobe.normal = d.normal;
     lobe.perceptual_roughness = d.perceptual_roughness;
     if ((features & HDRP_BRDF_FEATURE_ANISOTROPY) != 0u) {
@@ -619,25 +714,27 @@ HDRP_FN hdrp_brdf_lit_env hdrp_brdf_lit_env_make(hdrp_brdf_data d, hdrp_brdf_lit
         lobe.normal, hdrp_normalize_or(hdrp_i_brdf_reflect(w.v, lobe.normal), lobe.normal),
         hdrp_brdf_alpha_from_perceptual_roughness(lobe.perceptual_roughness));
     e.specular_perceptual_roughness = lobe.perceptual_roughness;
-    e.specular_weight = hdrp_v3_scale(w.specular_albedo, below * d.specular_occlusion);
+    e.specular_weight = w.specular_albedo;
+    e.diffuse_weight = w.diffuse_albedo;
     e.coat_direction = d.normal;
     e.coat_perceptual_roughness = d.coat_perceptual_roughness;
     e.coat_weight = 0.0f;
-    if ((features & HDRP_BRDF_FEATURE_CLEAR_COAT) != 0u) {
-        e.coat_direction = hdrp_normalize_or(hdrp_i_brdf_reflect(w.v, d.coat_normal), d.normal);
-        e.coat_weight = (1.0f - w.below_coat) * d.specular_occlusion;
-    }
-    e.diffuse_weight = hdrp_v3_scale(w.diffuse_albedo, below * d.ambient_occlusion);
-    e.through_weight = hdrp_v3_splat(0.0f);
-    if ((features & HDRP_BRDF_FEATURE_TRANSMISSION) != 0u) {
-        e.through_weight = hdrp_v3_mul(e.diffuse_weight, d.transmittance);
-    }
     e.transmitted_direction = hdrp_v3_neg(w.v);
     e.transmitted_perceptual_roughness = d.perceptual_roughness;
     e.transmitted_weight = hdrp_v3_splat(0.0f);
     if ((features & HDRP_BRDF_FEATURE_REFRACTION) != 0u) {
-        e = hdrp_i_brdf_lit_env_set_transmitted(e, d, w, below);
+        e = hdrp_i_brdf_lit_env_set_transmitted(e, d, w);
     }
+    if ((features & HDRP_BRDF_FEATURE_CLEAR_COAT) != 0u) {
+        e = hdrp_i_brdf_lit_env_set_coat(e, d, w);
+    }
+    e.through_weight = hdrp_v3_splat(0.0f);
+    if ((features & HDRP_BRDF_FEATURE_TRANSMISSION) != 0u) {
+        e.through_weight = hdrp_v3_mul(e.diffuse_weight, hdrp_i_brdf_slab_transmittance(d));
+    }
+    e.diffuse_weight = hdrp_v3_scale(e.diffuse_weight, d.ambient_occlusion);
+    e.specular_weight = hdrp_v3_scale(e.specular_weight, d.specular_occlusion);
+    e.coat_weight *= d.specular_occlusion;
     return e;
 }
 
@@ -646,11 +743,11 @@ HDRP_FN hdrp_brdf_lit_env hdrp_brdf_lit_env_make(hdrp_brdf_data d, hdrp_brdf_lit
 
 /* Relative shares of the lobes, and the sum of all. */
 struct hdrp_i_brdf_shares {
-    float coat;
-    float specular;
-    float diffuse;
+    float diffuse; /* with what bounces more than once between microfacets */
     float through;
+    float coat;
     float refracted;
+    float specular;
     float sum;
 };
 HDRP_TYPEDEF(hdrp_i_brdf_shares)
@@ -659,32 +756,52 @@ HDRP_FN hdrp_i_brdf_shares hdrp_i_brdf_lit_shares(hdrp_brdf_data d, hdrp_brdf_li
                                                   hdrp_u32 features)
 {
     hdrp_i_brdf_shares s;
+    float again =
+        hdrp_v3_max_component(w.bounces.reflected) * w.multiscatter * HDRP_PI * w.fit.mean_loss;
     float diffuse = hdrp_v3_max_component(w.diffuse_albedo) * w.below_coat;
     float f = hdrp_brdf_f_schlick(hdrp_v3_max_component(w.fresnel0), w.fresnel90, w.n_dot_v);
-    s.coat = (features & HDRP_BRDF_FEATURE_CLEAR_COAT) != 0u ? 1.0f - w.below_coat : 0.0f;
-    s.specular = hdrp_v3_max_component(w.specular_albedo) * w.below_coat;
-    s.diffuse = diffuse;
+    s.diffuse = diffuse + again * w.below_coat;
     s.through = (features & HDRP_BRDF_FEATURE_TRANSMISSION) != 0u
-                    ? diffuse * hdrp_v3_max_component(d.transmittance)
+                    ? diffuse * hdrp_v3_max_component(hdrp_i_brdf_slab_transmittance(d))
                     : 0.0f;
+    s.coat = (features & HDRP_BRDF_FEATURE_CLEAR_COAT) != 0u ? 1.0f - w.below_coat : 0.0f;
     s.refracted = (features & HDRP_BRDF_FEATURE_REFRACTION) != 0u
                       ? hdrp_v3_max_component(w.transmitted) * (1.0f - f) * w.below_coat
                       : 0.0f;
+    s.specular = (hdrp_v3_max_component(w.specular_albedo) - again) * w.below_coat;
     /* A black material still needs some lobe. */
     s.specular = hdrp_max(s.specular, 1e-3f);
-    s.sum = s.coat + s.specular + s.diffuse + s.through + s.refracted;
+    s.sum = s.diffuse + s.through + s.coat + s.refracted + s.specular;
     return s;
 }
 
-/** Density of a reflected direction of a GGX lobe about a frame. */
-HDRP_FN float hdrp_i_brdf_lobe_pdf(hdrp_v3 t, hdrp_v3 b, hdrp_v3 n, hdrp_v3 v, hdrp_v3 l,
+/** Equal widths of an isotropic lobe. */
+HDRP_FN hdrp_brdf_alphas hdrp_i_brdf_equal_alphas(float perceptual_roughness)
+{
+    hdrp_brdf_alphas a;
+    a.t = hdrp_brdf_alpha_from_perceptual_roughness(perceptual_roughness);
+    a.b = a.t;
+    return a;
+}
+
+/** The widths of light refracted through a thin wall. */
+HDRP_FN hdrp_brdf_alphas hdrp_i_brdf_refracted_alphas(hdrp_brdf_data d)
+{
+    return hdrp_i_brdf_equal_alphas(
+        hdrp_brdf_refraction_perceptual_roughness(d.perceptual_roughness, d.ior));
+}
+
+/** Density of a reflected direction of a GGX lobe about a frame; below the horizon too, where some
+ *  visible normals reflect. */
+HDRP_FN float hdrp_i_brdf_lobe_pdf(hdrp_v3 t, hdrp_v3 b, hdrp_v3 n, hdrp_v3 view, hdrp_v3 l,
                                    hdrp_brdf_alphas a)
 {
+    hdrp_v3 v = hdrp_i_brdf_facing(view, n);
     hdrp_v3 h = hdrp_brdf_half_vector(l, v, n);
     hdrp_v3 dh = hdrp_v3_sub(h, n);
     hdrp_v3 v_local = hdrp_v3_make(hdrp_v3_dot(t, v), hdrp_v3_dot(b, v), hdrp_v3_dot(n, v));
     hdrp_v3 h_local = hdrp_v3_make(hdrp_v3_dot(t, dh), hdrp_v3_dot(b, dh), hdrp_v3_dot(n, h));
-    return hdrp_v3_dot(n, l) > 0.0f ? hdrp_brdf_pdf_vndf(v_local, h_local, a.t, a.b) : 0.0f;
+    return h_local.z > 0.0f ? hdrp_brdf_pdf_vndf(v_local, h_local, a.t, a.b) : 0.0f;
 }
 
 /** Density of hdrp_brdf_lit_sample.
@@ -693,44 +810,45 @@ HDRP_FN float hdrp_i_brdf_lobe_pdf(hdrp_v3 t, hdrp_v3 b, hdrp_v3 n, hdrp_v3 v, h
  *  l         unit   towards the light
  *  features  any    as for hdrp_brdf_lit_view_make
  *  returns   [0,inf)  1/sr, per solid angle
- *  edges     0 where no lobe of the material has light
+ *  requires  hdrp_abs(hdrp_v3_dot(d.normal, w.v) - w.n_dot_v) < 1e-5f; w was made from d
+ *  edges     integrates to 1 over the sphere: it counts what a lobe reflects below the horizon
  *  error     none: held to the sampler by a chi-squared test
- *  source    Veach 1997, "Robust Monte Carlo Methods for Light Transport Simulation", section
- *            9.2.2 */
+ *  source    Veach 1997, "Robust Monte Carlo Methods for Light Transport Simulation", chapter 9 */
 HDRP_FN float hdrp_brdf_lit_pdf(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdrp_v3 l,
                                 hdrp_u32 features)
 {
     hdrp_i_brdf_shares s = hdrp_i_brdf_lit_shares(d, w, features);
     float n_dot_l = hdrp_v3_dot(d.normal, l);
     float p = s.specular * hdrp_i_brdf_lobe_pdf(d.tangent, d.bitangent, d.normal, w.v, l, w.alphas);
-    p += s.diffuse * hdrp_saturate(n_dot_l) * HDRP_INV_PI;
-    p += s.through * hdrp_saturate(-n_dot_l) * HDRP_INV_PI;
+    p += s.diffuse * hdrp_hemisphere_cosine_pdf(n_dot_l);
+    p += s.through * hdrp_hemisphere_cosine_pdf(-n_dot_l);
     if ((features & HDRP_BRDF_FEATURE_CLEAR_COAT) != 0u) {
         hdrp_basis f = hdrp_basis_from_normal(d.coat_normal);
-        hdrp_brdf_alphas a;
-        a.t = hdrp_brdf_alpha_from_perceptual_roughness(d.coat_perceptual_roughness);
-        a.b = a.t;
-        p += s.coat * hdrp_i_brdf_lobe_pdf(f.tangent, f.bitangent, d.coat_normal, w.v, l, a);
+        p += s.coat * hdrp_i_brdf_lobe_pdf(f.tangent, f.bitangent, d.coat_normal, w.v, l,
+                                           hdrp_i_brdf_equal_alphas(d.coat_perceptual_roughness));
     }
     if ((features & HDRP_BRDF_FEATURE_REFRACTION) != 0u) {
-        hdrp_brdf_alphas a;
-        a.t = hdrp_brdf_alpha_from_perceptual_roughness(
-            hdrp_brdf_refraction_perceptual_roughness(d.perceptual_roughness, d.ior));
-        a.b = a.t;
-        p += s.refracted * hdrp_i_brdf_lobe_pdf(d.tangent, d.bitangent, d.normal, w.v,
-                                                hdrp_v3_mad(l, d.normal, -2.0f * n_dot_l), a);
+        hdrp_v3 mirrored = hdrp_v3_mad(l, d.normal, -2.0f * n_dot_l);
+        p += s.refracted * hdrp_i_brdf_lobe_pdf(d.tangent, d.bitangent, d.normal, w.v, mirrored,
+                                                hdrp_i_brdf_refracted_alphas(d));
     }
     return p / s.sum;
 }
 
+/** Vector from its components in a frame. */
+HDRP_FN hdrp_v3 hdrp_i_brdf_from_frame(hdrp_v3 t, hdrp_v3 b, hdrp_v3 n, hdrp_v3 x)
+{
+    return hdrp_v3_mad(hdrp_v3_mad(hdrp_v3_scale(t, x.x), b, x.y), n, x.z);
+}
+
 /** Mirror direction of v about a half vector drawn from a GGX lobe. */
-HDRP_FN hdrp_v3 hdrp_i_brdf_lobe_sample(hdrp_v3 t, hdrp_v3 b, hdrp_v3 n, hdrp_v3 v,
+HDRP_FN hdrp_v3 hdrp_i_brdf_lobe_sample(hdrp_v3 t, hdrp_v3 b, hdrp_v3 n, hdrp_v3 view,
                                         hdrp_brdf_alphas a, hdrp_v2 u)
 {
+    hdrp_v3 v = hdrp_i_brdf_facing(view, n);
     hdrp_v3 v_local = hdrp_v3_make(hdrp_v3_dot(t, v), hdrp_v3_dot(b, v), hdrp_v3_dot(n, v));
-    hdrp_v3 h_local = hdrp_brdf_sample_vndf(v_local, a.t, a.b, u);
-    hdrp_v3 h = hdrp_v3_mad(hdrp_v3_mad(hdrp_v3_scale(t, h_local.x), b, h_local.y), n, h_local.z);
-    return hdrp_normalize_or(hdrp_i_brdf_reflect(v, h), n);
+    hdrp_v3 h = hdrp_i_brdf_from_frame(t, b, n, hdrp_brdf_sample_vndf(v_local, a.t, a.b, u));
+    return hdrp_i_brdf_reflect(v, h);
 }
 
 /** Direction drawn in proportion, roughly, to the Lit model: for path tracers.
@@ -739,40 +857,33 @@ HDRP_FN hdrp_v3 hdrp_i_brdf_lobe_sample(hdrp_v3 t, hdrp_v3 b, hdrp_v3 n, hdrp_v3
  *  u         [0,1]  three independent uniform numbers; the first chooses the lobe
  *  features  any    as for hdrp_brdf_lit_view_make
  *  returns   unit   towards a light; where hdrp_brdf_lit_eval is 0 there, the path ends
+ *  requires  hdrp_abs(hdrp_v3_dot(d.normal, w.v) - w.n_dot_v) < 1e-5f; w was made from d
  *  edges     total for u of 0 and 1
  *  error     none: held to hdrp_brdf_lit_pdf by a chi-squared test
- *  source    Veach 1997, "Robust Monte Carlo Methods for Light Transport Simulation", section
- *            9.2.2 */
+ *  source    Veach 1997, "Robust Monte Carlo Methods for Light Transport Simulation", chapter 9 */
 HDRP_FN hdrp_v3 hdrp_brdf_lit_sample(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdrp_v3 u,
                                      hdrp_u32 features)
 {
     hdrp_i_brdf_shares s = hdrp_i_brdf_lit_shares(d, w, features);
     float x = u.x * s.sum;
+    float through = s.diffuse + s.through;
+    float coat = through + s.coat;
     hdrp_v2 uv = hdrp_v2_make(u.y, u.z);
-    float phi = HDRP_TWO_PI * u.y;
-    float r = hdrp_sqrt(hdrp_saturate(u.z));
-    float side = x < s.specular + s.diffuse ? 1.0f : -1.0f;
-    float up = side * hdrp_sqrt(hdrp_max(1.0f - r * r, 0.0f));
-    hdrp_v3 l = hdrp_v3_mad(
-        hdrp_v3_mad(hdrp_v3_scale(d.tangent, r * hdrp_cos(phi)), d.bitangent, r * hdrp_sin(phi)),
-        d.normal, up);
-    if (x < s.specular) {
+    hdrp_v3 l;
+    if (x < through) {
+        l = hdrp_hemisphere_cosine(uv);
+        l.z = x < s.diffuse ? l.z : -l.z;
+        l = hdrp_i_brdf_from_frame(d.tangent, d.bitangent, d.normal, l);
+    } else if ((features & HDRP_BRDF_FEATURE_CLEAR_COAT) != 0u && x < coat) {
+        hdrp_basis f = hdrp_basis_from_normal(d.coat_normal);
+        l = hdrp_i_brdf_lobe_sample(f.tangent, f.bitangent, d.coat_normal, w.v,
+                                    hdrp_i_brdf_equal_alphas(d.coat_perceptual_roughness), uv);
+    } else if ((features & HDRP_BRDF_FEATURE_REFRACTION) != 0u && x < coat + s.refracted) {
+        l = hdrp_i_brdf_lobe_sample(d.tangent, d.bitangent, d.normal, w.v,
+                                    hdrp_i_brdf_refracted_alphas(d), uv);
+        l = hdrp_v3_mad(l, d.normal, -2.0f * hdrp_v3_dot(l, d.normal));
+    } else {
         l = hdrp_i_brdf_lobe_sample(d.tangent, d.bitangent, d.normal, w.v, w.alphas, uv);
-    } else if (x >= s.specular + s.diffuse + s.through) {
-        int is_coat = x < s.specular + s.diffuse + s.through + s.coat ? 1 : 0;
-        hdrp_brdf_alphas a;
-        if (is_coat == 1) {
-            hdrp_basis f = hdrp_basis_from_normal(d.coat_normal);
-            a.t = hdrp_brdf_alpha_from_perceptual_roughness(d.coat_perceptual_roughness);
-            a.b = a.t;
-            l = hdrp_i_brdf_lobe_sample(f.tangent, f.bitangent, d.coat_normal, w.v, a, uv);
-        } else {
-            a.t = hdrp_brdf_alpha_from_perceptual_roughness(
-                hdrp_brdf_refraction_perceptual_roughness(d.perceptual_roughness, d.ior));
-            a.b = a.t;
-            l = hdrp_i_brdf_lobe_sample(d.tangent, d.bitangent, d.normal, w.v, a, uv);
-            l = hdrp_v3_mad(l, d.normal, -2.0f * hdrp_v3_dot(l, d.normal));
-        }
     }
     return hdrp_normalize_or(l, d.normal);
 }
@@ -815,7 +926,7 @@ HDRP_API hdrp_result hdrp_brdf_fgd_bake_rows(hdrp_brdf_fgd* table, int size, int
  *  edges                 inputs are limited, NaN acts as 0
  *  error                 <= 0.0015 relative, size 64 and n_dot_v of at least 0.05
  *                        @accuracy brdf_fgd_lookup
- *  error                 <= 0.06 absolute, size 64 at any view  @accuracy brdf_fgd_lookup_grazing
+ *  error                 <= 0.065 absolute, size 64 at any view  @accuracy brdf_fgd_lookup_grazing
  *  source                bilinear interpolation between texel centres */
 HDRP_API hdrp_brdf_fgd hdrp_brdf_fgd_lookup(const hdrp_brdf_fgd* table, int size, float n_dot_v,
                                             float perceptual_roughness);
@@ -831,13 +942,13 @@ HDRP_API hdrp_brdf_fgd hdrp_brdf_fgd_lookup(const hdrp_brdf_fgd* table, int size
 
 /* Nodes of the quadrature of hdrp_brdf_fgd_integrate: polar on each side of the mirror direction,
  * azimuthal on a half turn. Chosen so that its error stays below 1e-4. */
-#define HDRP_I_BRDF_POLAR_NODES   24
+#define HDRP_I_BRDF_POLAR_NODES   16
 #define HDRP_I_BRDF_AZIMUTH_NODES 16
 
 typedef struct hdrp_i_brdf_quadrature {
     double x[HDRP_I_BRDF_POLAR_NODES]; /* Gauss-Legendre nodes in (-1,1) */
     double w[HDRP_I_BRDF_POLAR_NODES];
-    double tan_half[HDRP_I_BRDF_AZIMUTH_NODES]; /* of equidistant azimuths */
+    double tan2_half[HDRP_I_BRDF_AZIMUTH_NODES]; /* squared, of equidistant azimuths */
     double cosine[HDRP_I_BRDF_AZIMUTH_NODES];
 } hdrp_i_brdf_quadrature;
 
@@ -865,7 +976,7 @@ static void hdrp_i_brdf_quadrature_init(hdrp_i_brdf_quadrature* q)
     }
     for (i = 0; i < HDRP_I_BRDF_AZIMUTH_NODES; ++i) {
         double phi = pi * ((double)i + 0.5) / HDRP_I_BRDF_AZIMUTH_NODES;
-        q->tan_half[i] = tan(0.5 * phi);
+        q->tan2_half[i] = tan(0.5 * phi) * tan(0.5 * phi);
         q->cosine[i] = cos(phi);
     }
 }
@@ -876,27 +987,33 @@ static double hdrp_i_brdf_schlick_weight_of_square(double v_dot_h2)
     return x * x * x * x * x;
 }
 
-/* D integrated over the azimuth of a light at the polar angle theta_l, times alpha^-2; and the same
- * weighted by Schlick. With base = 2 (v.h)^2 = p - r cos(azimuth) the distribution is
- * alpha^2 / pi (base / (base + q))^2, so that the first integral is closed. The second splits into
- * the constant part, smooth in the azimuth, and the rest, which is smooth in the half-angle
- * variable of 1 / (base + q). */
-static void hdrp_i_brdf_azimuth(const hdrp_i_brdf_quadrature* nodes, double theta_v, double theta_l,
-                                double alpha2, double* albedo, double* schlick)
+/* A polar angle by the cosine and the sine of its half. */
+typedef struct hdrp_i_brdf_half_angle {
+    double c, s;
+} hdrp_i_brdf_half_angle;
+
+/* D integrated over the azimuth of a light l, times alpha^-2; and the same weighted by Schlick.
+ * With base = 2 (v.h)^2 = p - r cos(azimuth) the distribution is alpha^2 / pi times the square of
+ * base / (base + q), so that the first integral is closed. The second splits into the constant
+ * part, smooth in the azimuth, and the rest, smooth in the half-angle variable of 1 / (base + q).
+ */
+static void hdrp_i_brdf_azimuth(const hdrp_i_brdf_quadrature* nodes, hdrp_i_brdf_half_angle v,
+                                hdrp_i_brdf_half_angle l, double alpha2, double* albedo,
+                                double* schlick)
 {
-    double cs = cos(0.5 * (theta_l + theta_v)), cd = cos(0.5 * (theta_l - theta_v));
-    double ss = sin(0.5 * (theta_l + theta_v)), sd = sin(0.5 * (theta_l - theta_v));
+    double cs = l.c * v.c - l.s * v.s, cd = l.c * v.c + l.s * v.s; /* half sum and difference */
+    double ss = l.s * v.c + l.c * v.s, sd = l.s * v.c - l.c * v.s;
     double lo = 2.0 * cs * cs * (sd * sd + alpha2 * cd * cd); /* base + q, azimuth 0 */
     double hi = 2.0 * cd * cd * (ss * ss + alpha2 * cs * cs); /* base + q, azimuth pi */
     double q = 2.0 * cs * cs * cd * cd * (alpha2 - 1.0);
-    double p = cs * cs + cd * cd, r = sin(theta_l) * sin(theta_v);
+    double p = cs * cs + cd * cd, r = 4.0 * l.s * l.c * v.s * v.c;
     double root = sqrt(lo * hi), k = sqrt(lo / hi), sum = 0.0;
     int i;
     for (i = 0; i < HDRP_I_BRDF_AZIMUTH_NODES; ++i) {
-        double t = nodes->tan_half[i], u2 = k * k * t * t;
-        double base_q = lo + r * 2.0 * u2 / (1.0 + u2);
-        double e = q / base_q, stretch = k * (1.0 + t * t) / (1.0 + u2);
-        sum += (e - 2.0) * e * stretch * hdrp_i_brdf_schlick_weight_of_square(0.5 * (base_q - q));
+        double t2 = nodes->tan2_half[i], u2 = k * k * t2, w = 1.0 / (1.0 + u2);
+        double base_q = lo + 2.0 * r * u2 * w, e = q / base_q;
+        double direct = hdrp_i_brdf_schlick_weight_of_square(0.5 * (base_q - q));
+        sum += (e - 2.0) * e * k * (1.0 + t2) * w * direct;
         sum += hdrp_i_brdf_schlick_weight_of_square(0.5 * (p - r * nodes->cosine[i]));
     }
     *albedo = 2.0 * (1.0 - 2.0 * q / root + 0.5 * (lo + hi) * q * q / (root * root * root));
@@ -904,7 +1021,8 @@ static void hdrp_i_brdf_azimuth(const hdrp_i_brdf_quadrature* nodes, double thet
 }
 
 /* Both halves of the hemisphere's polar angle, below and above the mirror direction. sinh gathers
- * the nodes there: a lobe of width alpha decays over a few of its arguments. */
+ * the nodes there: a lobe of width alpha decays over a few of its arguments. At grazing a wide lobe
+ * needs them as well, because shadowing changes on the scale of n_dot_v. */
 static hdrp_brdf_fgd hdrp_i_brdf_integrate(const hdrp_i_brdf_quadrature* nodes, double n_dot_v,
                                            double alpha)
 {
@@ -912,22 +1030,30 @@ static hdrp_brdf_fgd hdrp_i_brdf_integrate(const hdrp_i_brdf_quadrature* nodes, 
     double c = n_dot_v > 1e-6 ? (n_dot_v < 1.0 ? n_dot_v : 1.0) : 1e-6;
     double theta_v = acos(c), alpha2 = alpha * alpha;
     double gv = sqrt(c * c * (1.0 - alpha2) + alpha2);
+    double gather = alpha / (1.0 + 20.0 * alpha * (1.0 - c) * (1.0 - c) * (1.0 - c));
     double albedo = 0.0, schlick = 0.0;
+    hdrp_i_brdf_half_angle v;
     hdrp_brdf_fgd result;
     int side, i;
+    v.c = cos(0.5 * theta_v);
+    v.s = sin(0.5 * theta_v);
     for (side = 0; side < 2; ++side) {
-        double t0 = side ? 0.0 : -asinh(theta_v / alpha);
-        double t1 = side ? asinh((half_pi - theta_v) / alpha) : 0.0;
+        double t0 = side ? 0.0 : -asinh(theta_v / gather);
+        double t1 = side ? asinh((half_pi - theta_v) / gather) : 0.0;
         for (i = 0; i < HDRP_I_BRDF_POLAR_NODES; ++i) {
-            double t = 0.5 * (t0 + t1) + 0.5 * (t1 - t0) * nodes->x[i];
-            double theta = theta_v + alpha * sinh(t);
-            double cl = cos(theta), gl = sqrt(cl * cl * (1.0 - alpha2) + alpha2);
-            double w = 0.5 * (t1 - t0) * nodes->w[i] * alpha * cosh(t) * alpha2 * cl * sin(theta) *
-                       0.5 / (cl * gv + c * gl);
-            double a, s;
-            hdrp_i_brdf_azimuth(nodes, theta_v, theta, alpha2, &a, &s);
-            albedo += w * a;
-            schlick += w * s;
+            double e = exp(0.5 * (t0 + t1) + 0.5 * (t1 - t0) * nodes->x[i]);
+            double theta = theta_v + 0.5 * gather * (e - 1.0 / e); /* sinh, and its slope cosh */
+            double scale = 0.25 * (t1 - t0) * nodes->w[i] * gather * (e + 1.0 / e);
+            double cl, gl, a, s;
+            hdrp_i_brdf_half_angle l;
+            l.c = cos(0.5 * theta);
+            l.s = sin(0.5 * theta);
+            cl = (l.c - l.s) * (l.c + l.s);
+            gl = sqrt(cl * cl * (1.0 - alpha2) + alpha2);
+            scale *= alpha2 * cl * l.s * l.c / (cl * gv + c * gl);
+            hdrp_i_brdf_azimuth(nodes, v, l, alpha2, &a, &s);
+            albedo += scale * a;
+            schlick += scale * s;
         }
     }
     result.albedo = (float)(albedo < 1.0 ? albedo : 1.0);

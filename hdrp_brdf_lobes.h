@@ -21,8 +21,8 @@
  *       v_smith_ggx_fast d_ggx_aniso d_ggx_aniso_vectors v_smith_ggx_aniso
  *   sampling ggx: sample_vndf pdf_vndf
  *   anisotropy: alphas_kulla alphas_disney kulla_from_alphas env_lobe_aniso
- *   directional albedo: fgd_uv fgd_fit_make fgd_from_fit fgd_fast energy_compensation
- *       specular_albedo
+ *   directional albedo: fgd_uv fgd_fit_make_aniso fgd_fit_make fgd_from_fit fgd_fast
+ *       energy_compensation bounces_make multiscatter specular_albedo
  *   diffuse: diffuse_disney diffuse_disney_normalized diffuse_share diffuse_share_mean diffuse
  *   thin film: film film_exact film_airy film_fast fresnel0_from_schlick
  *   transmission: refract volume_transmittance refraction_perceptual_roughness btdf_ggx
@@ -58,7 +58,7 @@
  *  u        [0,1]  cosine between light and half vector
  *  returns  [0,1]  1 at grazing, 0 at normal incidence
  *  edges    u outside [0,1], as rounding makes it, is limited
- *  error    <= 4e-7 relative  @accuracy brdf_schlick_weight
+ *  error    <= 5e-7 relative  @accuracy brdf_schlick_weight
  *  source   Schlick 1994, "An Inexpensive BRDF Model for Physically-based Rendering", eq. 15 */
 HDRP_FN float hdrp_brdf_schlick_weight(float u)
 {
@@ -86,7 +86,7 @@ HDRP_FN float hdrp_brdf_fresnel90(hdrp_v3 fresnel0)
  *  u          [0,1]  cosine between light and half vector
  *  returns    [0,1]
  *  edges      exactly fresnel0 at u = 1 and fresnel90 at u = 0; u is limited to [0,1]
- *  error      <= 6e-7 absolute against Schlick in double  @accuracy brdf_f_schlick
+ *  error      <= 3e-7 absolute against Schlick in double  @accuracy brdf_f_schlick
  *  source     Schlick 1994, "An Inexpensive BRDF Model for Physically-based Rendering", eq. 15
  *  note       against the true dielectric Fresnel term the approximation itself is off by up to
  *             0.036 (IOR 1.5), 0.060 (1.33), 0.125 (3); see hdrp_brdf_f_dielectric_exact */
@@ -113,7 +113,10 @@ HDRP_FN hdrp_v3 hdrp_brdf_f_schlick_rgb(hdrp_v3 fresnel0, float fresnel90, float
  *  eta          [0.25,4]    IOR of the far side over IOR of the side the light is on
  *  returns      [0,1]       1 at total internal reflection
  *  edges        0 for eta = 1; 1 at grazing incidence otherwise
- *  error        <= 1.5e-6 absolute  @accuracy brdf_f_dielectric_exact
+ *  error        <= 1.5e-6 absolute, cosines 1e-3 and more from that of the critical angle
+ *               @accuracy brdf_f_dielectric_exact
+ *  error        <= 0.003 absolute, at the critical angle, where the slope is infinite
+ *               @accuracy brdf_f_dielectric_critical
  *  source       Born and Wolf 1999, "Principles of Optics", section 1.5.2, eq. 20 and 21
  *  note         each amplitude is multiplied by its conjugate factor, so that nothing cancels for
  *               eta close to 1 */
@@ -121,7 +124,8 @@ HDRP_FN float hdrp_brdf_f_dielectric_exact(float cos_theta_i, float eta)
 {
     float c = hdrp_saturate(cos_theta_i);
     float e = (eta - 1.0f) * (eta + 1.0f);
-    float g2 = e + c * c;
+    /* eta^2 - 1 + c^2, which is small near total reflection: from its smaller terms. */
+    float g2 = c < HDRP_SQRT_HALF ? e + c * c : eta * eta - (1.0f - c) * (1.0f + c);
     float g = hdrp_sqrt(hdrp_max(g2, 0.0f));
     float s = c + g;
     float p = eta * eta * c + g;
@@ -136,7 +140,8 @@ HDRP_FN float hdrp_brdf_f_dielectric_exact(float cos_theta_i, float eta)
  *  kappa        [0,20]      imaginary part (extinction) over the IOR of the outer medium
  *  returns      [0,1]       for one wavelength or colour channel
  *  edges        1 at grazing incidence, except 0 for eta = 1 and kappa = 0
- *  error        <= 2e-6 absolute  @accuracy brdf_f_conductor_exact
+ *  error        <= 5e-7 absolute, for kappa of at least 0.01; below, as a dielectric
+ *               @accuracy brdf_f_conductor_exact
  *  source       Lagarde 2013, "Memo on Fresnel equations", section "Dielectric-Conductor"
  *  note         a or b, whichever would cancel, is formed from the product a * b = eta * kappa */
 HDRP_FN float hdrp_brdf_f_conductor_exact(float cos_theta_i, float eta, float kappa)
@@ -144,7 +149,9 @@ HDRP_FN float hdrp_brdf_f_conductor_exact(float cos_theta_i, float eta, float ka
     float c = hdrp_saturate(cos_theta_i);
     float c2 = c * c;
     float s2 = (1.0f - c) * (1.0f + c);
-    float m = (eta - kappa) * (eta + kappa) - s2;
+    /* eta^2 - s^2 from its smaller terms, as in hdrp_brdf_f_dielectric_exact. */
+    float es = c < HDRP_SQRT_HALF ? (eta - 1.0f) * (eta + 1.0f) + c2 : eta * eta - s2;
+    float m = es - kappa * kappa;
     float ek = eta * kappa;
     float a2b2 = hdrp_sqrt(m * m + 4.0f * ek * ek);
     float large = hdrp_sqrt(0.5f * (a2b2 + hdrp_abs(m)));
@@ -161,7 +168,7 @@ HDRP_FN float hdrp_brdf_f_conductor_exact(float cos_theta_i, float eta, float ka
  *  incident_ior     [0.1,10]   IOR of the side the light is on
  *  returns          [0,1]
  *  edges            0 for equal IORs
- *  error            <= 2.5e-7 absolute  @accuracy brdf_fresnel0_from_ior
+ *  error            <= 3e-7 absolute  @accuracy brdf_fresnel0_from_ior
  *  source           Lagarde 2013, "Memo on Fresnel equations", section "Fresnel at 0 degrees" */
 HDRP_FN float hdrp_brdf_fresnel0_from_ior(float transmitted_ior, float incident_ior)
 {
@@ -185,7 +192,7 @@ HDRP_FN float hdrp_brdf_ior_from_fresnel0(float fresnel0)
  *  incident_ior  [1,3]   IOR of the medium above
  *  returns       [0,1]   reflectance at normal incidence of the interface
  *  edges         1 stays 1 and needs no infinite IOR; 0 where the IORs are equal
- *  error         <= 3e-7 absolute  @accuracy brdf_fresnel0_at_interface
+ *  error         <= 5e-7 absolute  @accuracy brdf_fresnel0_at_interface
  *  source        Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
  *                Definition Render Pipeline", slides on clear coat
  *  note          the two conversions of the source in one, in which the pole at 1 cancels */
@@ -216,9 +223,10 @@ HDRP_FN hdrp_v3 hdrp_brdf_fresnel0_under_coat(hdrp_v3 fresnel0)
  *  returns   [0,1]  against the coat
  *  edges     0 below 0.066, 0.9963 at 1
  *  error     <= 0.042 absolute  @accuracy brdf_fresnel0_under_coat_fast
+ *  error     <= 0.004 absolute, from 0.04 upwards  @accuracy brdf_fresnel0_under_coat_fast_upper
  *  source    Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
  *            Definition Render Pipeline", slides on clear coat
- *  note      from 0.04 upwards the error is 3.8e-3 at most; below, the exact form rises again */
+ *  note      below 0.04 the exact form rises again */
 HDRP_FN float hdrp_brdf_fresnel0_under_coat_fast(float fresnel0)
 {
     float f = fresnel0;
@@ -230,7 +238,7 @@ HDRP_FN float hdrp_brdf_fresnel0_under_coat_fast(float fresnel0)
  *  eta        [0.25,4e7] IOR of the far side over IOR of the near side
  *  returns    [0,1]
  *  edges      0 at and beyond the critical angle; 1 at normal incidence
- *  error      <= 3e-7 absolute, of the sine of the angle  @accuracy brdf_refracted_cosine
+ *  error      <= 3e-7 absolute, of the squared cosine  @accuracy brdf_refracted_cosine
  *  source     Born and Wolf 1999, "Principles of Optics", section 1.5.1 (Snell's law) */
 HDRP_FN float hdrp_brdf_refracted_cosine(float cos_theta, float eta)
 {
@@ -270,7 +278,13 @@ HDRP_FN float hdrp_brdf_alpha_from_perceptual_roughness(float perceptual_roughne
  *           Surfaces", section 2 */
 HDRP_FN hdrp_v3 hdrp_brdf_half_vector(hdrp_v3 l, hdrp_v3 v, hdrp_v3 n)
 {
-    return hdrp_normalize_or(hdrp_v3_add(l, v), n);
+    hdrp_v3 s = hdrp_v3_add(l, v);
+    float d = hdrp_v3_dot(s, s);
+    /* Squares of what is left of shorter sums would lose digits to underflow. */
+    if (!(d >= 1e-30f)) {
+        return n;
+    }
+    return hdrp_v3_scale(s, 1.0f / hdrp_sqrt(d));
 }
 
 /** Squared sine of the angle between two unit vectors, precise for the smallest angles.
@@ -278,7 +292,7 @@ HDRP_FN hdrp_v3 hdrp_brdf_half_vector(hdrp_v3 l, hdrp_v3 v, hdrp_v3 n)
  *  h        unit
  *  returns  [0,1]
  *  edges    0 for h = n and for h = -n
- *  error    <= 1.5e-6 relative, angles of 1e-5 to 1.5 rad, for n and h as given
+ *  error    <= 4.5e-7 relative, angles of 1e-5 to 1.5 rad, for n and h as given
  *           @accuracy brdf_sin2_between
  *  source   Lagrange's identity, |n|^2 |h|^2 - (n.h)^2 = |n x h|^2
  *  note     n x h = n x (h - n), and h - n is exact where it is small: a plain cross product, or
@@ -294,7 +308,7 @@ HDRP_FN float hdrp_brdf_sin2_between(hdrp_v3 n, hdrp_v3 h)
  *  alpha    [0,1]      GGX width
  *  returns  [0,3.2e7]  1/sr; D * n_dot_h integrates to 1 over the hemisphere
  *  edges    alpha below HDRP_ALPHA_MIN acts as HDRP_ALPHA_MIN
- *  error    <= 2e-6 relative for n_dot_h as given  @accuracy brdf_d_ggx
+ *  error    <= 5.5e-7 relative for n_dot_h as given  @accuracy brdf_d_ggx
  *  source   Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces", eq. 33
  *  note     (1-c)(1+c) does not cancel in the highlight. The input does: rounding n_dot_h alone
  *           costs 1e-3 at perceptual roughness 0.1 and everything below 0.03 */
@@ -313,8 +327,8 @@ HDRP_FN float hdrp_brdf_d_ggx(float n_dot_h, float alpha)
  *  returns  [0,3.2e7]  1/sr
  *  edges    alpha below HDRP_ALPHA_MIN acts as HDRP_ALPHA_MIN; a half vector below the horizon
  *           counts as its mirror image above
- *  error    <= 2e-6 relative for n and h as given  @accuracy brdf_d_ggx_vectors
- *  error    <= 4e-3 relative against the h before it was rounded  @accuracy brdf_d_ggx_unrounded
+ *  error    <= 1e-6 relative for n and h as given  @accuracy brdf_d_ggx_vectors
+ *  error    <= 8.5e-4 relative against the h before it was rounded  @accuracy brdf_d_ggx_unrounded
  *  source   Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces", eq.
  *           33 */
 HDRP_FN float hdrp_brdf_d_ggx_vectors(hdrp_v3 n, hdrp_v3 h, float alpha)
@@ -331,7 +345,7 @@ HDRP_FN float hdrp_brdf_d_ggx_vectors(hdrp_v3 n, hdrp_v3 h, float alpha)
  *  alpha    [0,1]    GGX width
  *  returns  [0,5e9]
  *  edges    exact down to n_dot_l + n_dot_v of 1e-6; limited to 5e9 below
- *  error    <= 6e-7 relative  @accuracy brdf_v_smith_ggx
+ *  error    <= 3e-7 relative  @accuracy brdf_v_smith_ggx
  *  source   Heitz 2014, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs",
  *           eq. 72 and 99 */
 HDRP_FN float hdrp_brdf_v_smith_ggx(float n_dot_l, float n_dot_v, float alpha)
@@ -362,13 +376,15 @@ HDRP_FN float hdrp_brdf_v_smith_ggx_fast(float n_dot_l, float n_dot_v, float alp
  *  t_dot_h  [-1,1]     along the tangent
  *  b_dot_h  [-1,1]     along the bitangent
  *  n_dot_h  [0,1]      along the normal
- *  alpha_t  [0,2]      GGX width along the tangent
- *  alpha_b  [0,2]      GGX width along the bitangent
+ *  alpha_t  [0,4]      GGX width along the tangent
+ *  alpha_b  [0,4]      GGX width along the bitangent
  *  returns  [0,3.2e7]  1/sr
- *  edges    a width below HDRP_ALPHA_MIN acts as HDRP_ALPHA_MIN; 0 for a half vector of length 0
- *  error    <= 2e-6 relative for the arguments as given  @accuracy brdf_d_ggx_aniso
- *  source   Burley 2012, "Physically-Based Shading at Disney", appendix B, eq. 13; arrangement by
- *           McAuley 2015, "Rendering the World of Far Cry 4"
+ *  requires hdrp_abs(t_dot_h * t_dot_h + b_dot_h * b_dot_h + n_dot_h * n_dot_h - 1.0f) < 1e-3f;
+ *           a unit vector
+ *  edges    a width below HDRP_ALPHA_MIN acts as HDRP_ALPHA_MIN
+ *  error    <= 8e-7 relative for the arguments as given  @accuracy brdf_d_ggx_aniso
+ *  source   Burley 2012, "Physically-Based Shading at Disney", appendix B; arrangement by McAuley
+ *           2015, "Rendering the World of Far Cry 4"
  *  note     a2 (a2/s)^2 and not a2^3/s^2: the cube underflows at widths that are in use */
 HDRP_FN float hdrp_brdf_d_ggx_aniso(float t_dot_h, float b_dot_h, float n_dot_h, float alpha_t,
                                     float alpha_b)
@@ -379,9 +395,9 @@ HDRP_FN float hdrp_brdf_d_ggx_aniso(float t_dot_h, float b_dot_h, float n_dot_h,
     float vt = ab * t_dot_h;
     float vb = at * b_dot_h;
     float vn = a2 * n_dot_h;
-    float s = vt * vt + vb * vb + vn * vn;
-    float r = a2 / hdrp_max(s, HDRP_FLT_MIN);
-    return s > 0.0f ? HDRP_INV_PI * a2 * (r * r) : 0.0f;
+    /* No unit vector reaches the floor; it keeps what is none finite. */
+    float r = a2 / hdrp_max(vt * vt + vb * vb + vn * vn, a2 * a2 * (1.0f / 64.0f));
+    return HDRP_INV_PI * a2 * (r * r);
 }
 
 /** Anisotropic GGX normal distribution from vectors, precise at any width.
@@ -389,19 +405,25 @@ HDRP_FN float hdrp_brdf_d_ggx_aniso(float t_dot_h, float b_dot_h, float n_dot_h,
  *  b        unit       bitangent, orthogonal to n and t
  *  n        unit       shading normal
  *  h        unit       half vector
- *  alpha_t  [0,2]      GGX width along the tangent
- *  alpha_b  [0,2]      GGX width along the bitangent
+ *  alpha_t  [0,4]      GGX width along the tangent
+ *  alpha_b  [0,4]      GGX width along the bitangent
  *  returns  [0,3.2e7]  1/sr
- *  edges    as hdrp_brdf_d_ggx_aniso
- *  error    <= 2e-6 relative for a frame and h as given  @accuracy brdf_d_ggx_aniso_vectors
+ *  requires hdrp_abs(hdrp_v3_dot(t, b)) + hdrp_abs(hdrp_v3_dot(t, n)) +
+ *           hdrp_abs(hdrp_v3_dot(b, n)) < 1e-6f; a frame
+ *  edges    a width below HDRP_ALPHA_MIN acts as HDRP_ALPHA_MIN; a half vector below the horizon
+ *           counts as its mirror image above
+ *  error    <= 2e-6 relative for a frame and h as given, widths within 10 to 1
+ *           @accuracy brdf_d_ggx_aniso_vectors
+ *  error    <= 5e-3 relative for any widths: the frame itself is rounded
+ *           @accuracy brdf_d_ggx_aniso_vectors_narrow
  *  source   Burley 2012, "Physically-Based Shading at Disney", appendix B, eq. 13
  *  note     t.h = t.(h - n) in an orthogonal frame, whose small terms do not cancel */
 HDRP_FN float hdrp_brdf_d_ggx_aniso_vectors(hdrp_v3 t, hdrp_v3 b, hdrp_v3 n, hdrp_v3 h,
                                             float alpha_t, float alpha_b)
 {
     hdrp_v3 d = hdrp_v3_sub(h, n);
-    return hdrp_brdf_d_ggx_aniso(hdrp_v3_dot(t, d), hdrp_v3_dot(b, d),
-                                 hdrp_saturate(hdrp_v3_dot(n, h)), alpha_t, alpha_b);
+    return hdrp_brdf_d_ggx_aniso(hdrp_v3_dot(t, d), hdrp_v3_dot(b, d), hdrp_abs(hdrp_v3_dot(n, h)),
+                                 alpha_t, alpha_b);
 }
 
 /** Height-correlated Smith visibility of anisotropic GGX.
@@ -411,11 +433,11 @@ HDRP_FN float hdrp_brdf_d_ggx_aniso_vectors(hdrp_v3 t, hdrp_v3 b, hdrp_v3 n, hdr
  *  t_dot_v  [-1,1]   view direction along the tangent
  *  b_dot_v  [-1,1]   view direction along the bitangent
  *  n_dot_v  [0,1]    view direction along the normal
- *  alpha_t  [0,2]    GGX width along the tangent
- *  alpha_b  [0,2]    GGX width along the bitangent
+ *  alpha_t  [0,4]    GGX width along the tangent
+ *  alpha_b  [0,4]    GGX width along the bitangent
  *  returns  [0,5e9]
  *  edges    as hdrp_brdf_v_smith_ggx
- *  error    <= 6e-7 relative  @accuracy brdf_v_smith_ggx_aniso
+ *  error    <= 2.5e-7 relative  @accuracy brdf_v_smith_ggx_aniso
  *  source   Heitz 2014, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs",
  *           section 5.3 and eq. 99 */
 HDRP_FN float hdrp_brdf_v_smith_ggx_aniso(float t_dot_l, float b_dot_l, float n_dot_l,
@@ -434,8 +456,8 @@ HDRP_FN float hdrp_brdf_v_smith_ggx_aniso(float t_dot_l, float b_dot_l, float n_
 
 /** Half vector drawn from the normals that are visible from v.
  *  v        unit   local direction to the viewer, z >= 0
- *  alpha_t  [0,2]  GGX width along the tangent
- *  alpha_b  [0,2]  GGX width along the bitangent
+ *  alpha_t  [0,4]  GGX width along the tangent
+ *  alpha_b  [0,4]  GGX width along the bitangent
  *  u        [0,1]  two independent uniform numbers
  *  returns  unit   local half vector, z >= 0
  *  edges    total for grazing v and for u of 0 and 1; below HDRP_ALPHA_MIN as at it
@@ -458,11 +480,12 @@ HDRP_FN hdrp_v3 hdrp_brdf_sample_vndf(hdrp_v3 v, float alpha_t, float alpha_b, h
 /** Density of the reflected directions of hdrp_brdf_sample_vndf.
  *  v        unit       local direction to the viewer, z >= 0
  *  h        unit       local half vector, z >= 0
- *  alpha_t  [0,2]      GGX width along the tangent
- *  alpha_b  [0,2]      GGX width along the bitangent
+ *  alpha_t  [0,4]      GGX width along the tangent
+ *  alpha_b  [0,4]      GGX width along the bitangent
  *  returns  [0,1.7e11] 1/sr, per solid angle of l = 2 (v.h) h - v
+ *  requires v.z >= 0.0f && h.z >= 0.0f
  *  edges    no division by the cosine of v: finite at grazing
- *  error    <= 2.5e-6 relative  @accuracy brdf_pdf_vndf
+ *  error    <= 8.5e-7 relative  @accuracy brdf_pdf_vndf
  *  source   Heitz 2018, "Sampling the GGX Distribution of Visible Normals", eq. 17 */
 HDRP_FN float hdrp_brdf_pdf_vndf(hdrp_v3 v, hdrp_v3 h, float alpha_t, float alpha_b)
 {
@@ -478,8 +501,8 @@ HDRP_FN float hdrp_brdf_pdf_vndf(hdrp_v3 v, hdrp_v3 h, float alpha_t, float alph
 
 /* GGX widths along the tangent and the bitangent. */
 struct hdrp_brdf_alphas {
-    float t; /* [HDRP_ALPHA_MIN,2] */
-    float b; /* [HDRP_ALPHA_MIN,2] */
+    float t; /* [HDRP_ALPHA_MIN,4] */
+    float b; /* [HDRP_ALPHA_MIN,4] */
 };
 HDRP_TYPEDEF(hdrp_brdf_alphas)
 
@@ -488,7 +511,7 @@ HDRP_TYPEDEF(hdrp_brdf_alphas)
  *  anisotropy            [-1,1]  > 0 stretches the highlight along the tangent
  *  returns               [HDRP_ALPHA_MIN,2]
  *  edges                 at +-1 one width is HDRP_ALPHA_MIN, the other twice the mean
- *  error                 <= 1.2e-7 absolute  @accuracy brdf_alphas_kulla
+ *  error                 <= 2e-7 relative  @accuracy brdf_alphas_kulla
  *  source                Kulla and Conty 2017, "Revisiting Physically Based Shading at Imageworks",
  *                        slide on anisotropy */
 HDRP_FN hdrp_brdf_alphas hdrp_brdf_alphas_kulla(float perceptual_roughness, float anisotropy)
@@ -588,9 +611,9 @@ HDRP_FN hdrp_brdf_env_lobe hdrp_brdf_env_lobe_aniso(hdrp_v3 t, hdrp_v3 b, hdrp_v
  * (hdrp_brdf_fgd_bake_rows, baked once, 64 x 64 is enough) or from the analytic fit. */
 
 /* The two integrals over the hemisphere of D V cos for unit Fresnel term and for Schlick's weight.
- * Specular albedo is linear in them, see hdrp_brdf_specular_albedo. */
+ * Specular albedo is linear in them, see hdrp_brdf_specular_albedo. Made by hdrp_brdf_fgd_fast. */
 struct hdrp_brdf_fgd {
-    float albedo;  /* [0,1] single-scattering albedo for F = 1 */
+    float albedo;  /* [0,1] of the first bounce, for F = 1 */
     float schlick; /* [0,1] the same, each direction weighted by hdrp_brdf_schlick_weight */
 };
 HDRP_TYPEDEF(hdrp_brdf_fgd)
@@ -611,24 +634,19 @@ HDRP_FN hdrp_v2 hdrp_brdf_fgd_uv(float n_dot_v, float perceptual_roughness, floa
                         hdrp_saturate(perceptual_roughness) * scale + offset);
 }
 
-/* The analytic fit of FGD at one roughness: rational functions of u = sqrt(n_dot_v). Made once per
- * pixel, it costs each light a few multiply-adds. Also the averages over the hemisphere. */
+/* The analytic fit of FGD at one roughness, in the cosine c of a direction and t = c / alpha. Made
+ * once per pixel, it costs each light two divisions and some multiply-adds. Made by
+ * hdrp_brdf_fgd_fit_make. */
 struct hdrp_brdf_fgd_fit {
-    hdrp_v2 ratio_n;    /* schlick / albedo = (1 - n_dot_v) (x + y u) / */
-    hdrp_v3 ratio_d;    /* (x + y u + z u^2) */
-    hdrp_v3 loss_n;     /* 1 - albedo = u (x + y u + z u^2) / */
-    hdrp_v3 loss_d;     /* (x + y u + z u^2) */
-    float mean_ratio;   /* cosine-weighted mean of schlick / albedo */
-    float mean_albedo;  /* of albedo */
+    float inverse_alpha;
+    hdrp_v2 loss_n;     /* 1 - albedo = t (x + y t) / */
+    hdrp_v3 loss_d;     /* (1 + x t + y t^2 + z t^3) */
+    hdrp_v2 cosine_n;   /* schlick / albedo = (1 - m)^5 with m = c + (x + y c) / */
+    float cosine_d;     /* (1 + d t), an effective cosine between view and half vector */
+    float mean_loss;    /* cosine-weighted mean over the hemisphere of 1 - albedo */
     float mean_schlick; /* of schlick */
 };
 HDRP_TYPEDEF(hdrp_brdf_fgd_fit)
-
-/** a + b x + c x^2. */
-HDRP_FN float hdrp_i_brdf_quadratic(float a, float b, float c, float x)
-{
-    return a + x * (b + x * c);
-}
 
 /** a + b x + c x^2 + d x^3. */
 HDRP_FN float hdrp_i_brdf_cubic(float a, float b, float c, float d, float x)
@@ -636,70 +654,72 @@ HDRP_FN float hdrp_i_brdf_cubic(float a, float b, float c, float d, float x)
     return a + x * (b + x * (c + x * d));
 }
 
-/** The analytic fit of FGD at one roughness.
- *  perceptual_roughness  [0,1]
- *  returns               valid
- *  edges                 total; below HDRP_PERCEPTUAL_ROUGHNESS_MIN as at it
- *  error                 none: see hdrp_brdf_fgd_fast, whose coefficients these are
- *  source                our own minimax fit to the quadrature of hdrp_brdf_fgd_integrate, by
- *                        tools/fit_brdf.py. It errs towards too much albedo, so that the diffuse
- *                        lobe that hdrp_brdf_diffuse couples to it never gains energy */
-HDRP_FN hdrp_brdf_fgd_fit hdrp_brdf_fgd_fit_make(float perceptual_roughness)
+/** The analytic fit of FGD of an anisotropic lobe, the same for all azimuths.
+ *  alphas   valid   GGX widths along the tangent and the bitangent
+ *  returns  finite
+ *  edges    equal widths give the fit of the isotropic lobe; widths above 1 act as 1
+ *  error    none: see hdrp_brdf_fgd_fast, whose coefficients these are
+ *  source   our own minimax fit to a quadrature, by tools/fit_brdf.py
+ *  note     the loss is that of the mean width. The weights of the Fresnel term are those of the
+ *           narrower one, which reflects most at grazing: a diffuse lobe coupled to it never gains
+ *           energy there. See hdrp_brdf_lit_view_make for what that does to a furnace */
+HDRP_FN hdrp_brdf_fgd_fit hdrp_brdf_fgd_fit_make_aniso(hdrp_brdf_alphas alphas)
 {
     hdrp_brdf_fgd_fit f;
-    float p = hdrp_clamp(perceptual_roughness, HDRP_PERCEPTUAL_ROUGHNESS_MIN, 1.0f);
-    f.ratio_n.x = hdrp_i_brdf_quadratic(0.022186442f, -0.012941279f, 0.001765296f, p);
-    f.ratio_n.y = hdrp_i_brdf_quadratic(-0.026079349f, 0.015244461f, -0.000861881f, p);
-    f.ratio_d.x = hdrp_i_brdf_quadratic(0.021698971f, 0.009699956f, 0.219789658f, p);
-    f.ratio_d.y = hdrp_i_brdf_quadratic(-0.025212614f, -0.216681991f, 0.068790934f, p);
-    f.ratio_d.z = hdrp_i_brdf_quadratic(0.078174201f, 0.209416209f, -0.358690205f, p);
-    f.loss_n.x = p * hdrp_i_brdf_quadratic(2.112435745f, 10.96807691f, -9.506917805f, p);
-    f.loss_n.y = p * hdrp_i_brdf_quadratic(-9.262945371f, 6.993023548f, 55.75933410f, p);
-    f.loss_n.z = p * hdrp_i_brdf_quadratic(15.54278552f, -76.88269919f, 60.24908989f, p);
-    f.loss_d.x = hdrp_i_brdf_cubic(0.006075940691f, -1.427138497f, 117.1475739f, -101.2427910f, p);
-    f.loss_d.y = hdrp_i_brdf_cubic(1.234632904f, -187.4502387f, 234.6801844f, -24.08461633f, p);
-    f.loss_d.z = hdrp_i_brdf_cubic(83.94792510f, -40.64339960f, -60.47121817f, 58.41367382f, p);
-    f.mean_ratio = hdrp_i_brdf_cubic(0.049198298f, 0.069418406f, -0.582826916f,
-                                     0.970094512f + p * (-0.653637948f + p * 0.156278598f), p);
-    f.mean_albedo = hdrp_i_brdf_cubic(1.002299831f, -0.23905131f, 2.189078807f,
-                                      -7.39390892f + p * (7.227564278f - p * 2.378190096f), p);
-    f.mean_schlick = hdrp_i_brdf_cubic(0.049184384f, 0.070219816f, -0.648656877f,
-                                       1.135811483f + p * (-0.807149401f + p * 0.204814418f), p);
+    float a = hdrp_clamp(0.5f * (alphas.t + alphas.b), HDRP_ALPHA_MIN, 1.0f);
+    float p = hdrp_sqrt(a);
+    float q = hdrp_sqrt(hdrp_clamp(hdrp_min(alphas.t, alphas.b), HDRP_ALPHA_MIN, 1.0f));
+    float mean;
+    f.inverse_alpha = 1.0f / a;
+    f.loss_n.x = hdrp_i_brdf_cubic(0.230199918f, 0.0611920953f, 3.76339936f, 1.48308444f, a);
+    f.loss_n.y = a * hdrp_i_brdf_cubic(-0.180100933f, 7.54789209f, -13.2210388f, 89.1957245f, a);
+    f.loss_d.x = hdrp_i_brdf_cubic(0.674825966f, 5.26004457f, 32.7332573f, 0.0f, a);
+    f.loss_d.y =
+        0.127423942f + a * hdrp_i_brdf_cubic(-6.9580822f, 11.5299244f, 38.5920219f, 50.5328941f, a);
+    f.loss_d.z = hdrp_i_brdf_cubic(0.310372114f, 1.56204367f, 26.442585f, -33.816391f, a);
+    mean = hdrp_i_brdf_cubic(39.3234062f, -60.8898277f, 46.7970543f, -13.6633568f, p);
+    mean = hdrp_i_brdf_cubic(0.0636951923f, 2.37435579f, -12.3076382f, mean, p);
+    f.mean_loss = a * a / mean;
+    f.cosine_n.x = q * (0.108742684f + q * hdrp_i_brdf_cubic(2.90460491f, -6.76332474f, 6.75303411f,
+                                                             -2.55623007f, q));
+    f.cosine_n.y = hdrp_i_brdf_cubic(-0.16311945f, -0.653872967f, 0.128006995f, 0.0f, q);
+    f.cosine_d = hdrp_i_brdf_cubic(0.72819525f, -1.34152937f, 1.71405375f, -1.40320504f, q);
+    f.mean_schlick = 0.0467854775f + q * hdrp_i_brdf_cubic(0.0539289117f, -0.480697751f,
+                                                           0.645444334f, -0.262367249f, q);
     return f;
 }
 
-/* FGD in the form of the fit. */
-struct hdrp_i_brdf_split {
-    float ratio; /* [0,1] schlick / albedo */
-    float loss;  /* [0,1] 1 - albedo */
-};
-HDRP_TYPEDEF(hdrp_i_brdf_split)
-
-HDRP_FN hdrp_i_brdf_split hdrp_i_brdf_split_from_fit(hdrp_brdf_fgd_fit fit, float n_dot_x)
+/** The analytic fit of FGD at one roughness.
+ *  perceptual_roughness  [0,1]
+ *  returns               finite
+ *  edges                 total; below HDRP_PERCEPTUAL_ROUGHNESS_MIN as at it
+ *  error                 none: see hdrp_brdf_fgd_fast, whose coefficients these are
+ *  source                our own minimax fit to a quadrature, by tools/fit_brdf.py */
+HDRP_FN hdrp_brdf_fgd_fit hdrp_brdf_fgd_fit_make(float perceptual_roughness)
 {
-    hdrp_i_brdf_split s;
-    float c = hdrp_saturate(n_dot_x);
-    float u = hdrp_sqrt(c);
-    s.ratio = hdrp_saturate((1.0f - c) * (fit.ratio_n.x + fit.ratio_n.y * u) /
-                            hdrp_i_brdf_quadratic(fit.ratio_d.x, fit.ratio_d.y, fit.ratio_d.z, u));
-    s.loss = hdrp_saturate(u * hdrp_i_brdf_quadratic(fit.loss_n.x, fit.loss_n.y, fit.loss_n.z, u) /
-                           hdrp_i_brdf_quadratic(fit.loss_d.x, fit.loss_d.y, fit.loss_d.z, u));
-    return s;
+    hdrp_brdf_alphas a;
+    a.t = hdrp_brdf_alpha_from_perceptual_roughness(perceptual_roughness);
+    a.b = a.t;
+    return hdrp_brdf_fgd_fit_make_aniso(a);
 }
 
 /** FGD of one direction from the fit of its roughness.
  *  fit      valid  made by hdrp_brdf_fgd_fit_make
  *  n_dot_x  [0,1]  cosine between unit normal and direction
  *  returns  [0,1]
- *  edges    exactly albedo 1 at grazing and schlick 0 at normal incidence
+ *  edges    exactly albedo 1 at grazing
  *  error    none: see hdrp_brdf_fgd_fast
- *  source   as hdrp_brdf_fgd_fit_make */
+ *  source   our own minimax fit to a quadrature, by tools/fit_brdf.py */
 HDRP_FN hdrp_brdf_fgd hdrp_brdf_fgd_from_fit(hdrp_brdf_fgd_fit fit, float n_dot_x)
 {
     hdrp_brdf_fgd f;
-    hdrp_i_brdf_split s = hdrp_i_brdf_split_from_fit(fit, n_dot_x);
-    f.albedo = 1.0f - s.loss;
-    f.schlick = s.ratio * f.albedo;
+    float c = hdrp_saturate(n_dot_x);
+    float t = c * fit.inverse_alpha;
+    float m = c + (fit.cosine_n.x + fit.cosine_n.y * c) / (1.0f + fit.cosine_d * t);
+    float loss = t * (fit.loss_n.x + fit.loss_n.y * t) /
+                 hdrp_i_brdf_cubic(1.0f, fit.loss_d.x, fit.loss_d.y, fit.loss_d.z, t);
+    f.albedo = 1.0f - hdrp_saturate(loss);
+    f.schlick = hdrp_brdf_schlick_weight(m) * f.albedo;
     return f;
 }
 
@@ -707,12 +727,12 @@ HDRP_FN hdrp_brdf_fgd hdrp_brdf_fgd_from_fit(hdrp_brdf_fgd_fit fit, float n_dot_
  *  n_dot_v               [0,1]  cosine between unit normal and direction to the viewer
  *  perceptual_roughness  [0,1]
  *  returns               [0,1]
- *  edges                 total
- *  error                 <= 0.025 absolute, from n_dot_v of 0.02 and twice alpha upwards
- *                        @accuracy brdf_fgd_fast
- *  source                as hdrp_brdf_fgd_fit_make
- *  note                  closer to grazing than alpha the albedo of a smooth surface dips to 0.88;
- *                        the fit ignores that dip */
+ *  edges                 total; exactly albedo 1 at grazing
+ *  error                 <= 0.006 absolute, of schlick and albedo  @accuracy brdf_fgd_fast
+ *  error                 <= 0.0022 absolute, of albedo  @accuracy brdf_fgd_fast_albedo
+ *  source                our own minimax fit to a quadrature, by tools/fit_brdf.py
+ *  note                  it errs towards too much rather than too little, which keeps a diffuse
+ *                        lobe that is coupled to it from gaining energy */
 HDRP_FN hdrp_brdf_fgd hdrp_brdf_fgd_fast(float n_dot_v, float perceptual_roughness)
 {
     return hdrp_brdf_fgd_from_fit(hdrp_brdf_fgd_fit_make(perceptual_roughness), n_dot_v);
@@ -733,6 +753,74 @@ HDRP_FN hdrp_v3 hdrp_brdf_energy_compensation(hdrp_brdf_fgd fgd, hdrp_v3 fresnel
     float missing = 1.0f / hdrp_max(fgd.albedo, 0.05f) - 1.0f;
     return hdrp_v3_make(1.0f + fresnel0.x * missing, 1.0f + fresnel0.y * missing,
                         1.0f + fresnel0.z * missing);
+}
+
+/* What becomes of the light that the first bounce between microfacets loses to shadowing. Made by
+ * hdrp_brdf_bounces_make. */
+struct hdrp_brdf_bounces {
+    hdrp_v3 reflected; /* [0,1] share of it that leaves after more bounces */
+    hdrp_v3 passed;    /* [0,3] share of it that enters the surface, over 1 - F0 */
+};
+HDRP_TYPEDEF(hdrp_brdf_bounces)
+
+/** Fate of light that bounces more than once, for one channel: reflected, passed over 1 - F0. */
+HDRP_FN hdrp_v2 hdrp_i_brdf_bounces_channel(float again, float f0, float f90)
+{
+    float below = 1.0f - f90 * (1.0f / 21.0f);
+    float mean = 1.0f - (1.0f - f0) * below; /* Schlick's term, cosine-weighted mean */
+    float d = 1.0f / (1.0f - again * mean);
+    return hdrp_v2_make(mean * mean * (1.0f - again) * d,
+                        below * (1.0f + mean * (1.0f - again)) * d);
+}
+
+/** What becomes of the light that the first bounce between microfacets loses to shadowing.
+ *  fit        valid  made by hdrp_brdf_fgd_fit_make
+ *  fresnel0   [0,1]  per component
+ *  fresnel90  [0,1]  see hdrp_brdf_fresnel90
+ *  returns    valid  reflected + (1 - fresnel0) passed is 1
+ *  edges      fresnel0 = 1 reflects all; passed stays finite there
+ *  error      <= 0.035 absolute, in the albedo of hdrp_brdf_multiscatter and the first bounce,
+ *             against a random walk  @accuracy brdf_bounces
+ *  source     Kulla and Conty 2017, "Revisiting Physically Based Shading at Imageworks"
+ *  note       the source lets the mean albedo of the first bounce escape from each one. From the
+ *             second on more does, a third less of the loss: with that, coloured metals come within
+ *             half the distance to the random walk of Heitz et al. 2016 */
+HDRP_FN hdrp_brdf_bounces hdrp_brdf_bounces_make(hdrp_brdf_fgd_fit fit, hdrp_v3 fresnel0,
+                                                 float fresnel90)
+{
+    hdrp_brdf_bounces r;
+    float again = (2.0f / 3.0f) * fit.mean_loss;
+    hdrp_v2 x = hdrp_i_brdf_bounces_channel(again, fresnel0.x, fresnel90);
+    hdrp_v2 y = hdrp_i_brdf_bounces_channel(again, fresnel0.y, fresnel90);
+    hdrp_v2 z = hdrp_i_brdf_bounces_channel(again, fresnel0.z, fresnel90);
+    r.reflected = hdrp_v3_make(x.x, y.x, z.x);
+    r.passed = hdrp_v3_make(x.y, y.y, z.y);
+    return r;
+}
+
+/** Lobe of the light that bounces more than once between microfacets. Added to D V F it keeps a
+ *  white furnace white, and it is reciprocal.
+ *  fit        valid    made by hdrp_brdf_fgd_fit_make at the roughness of the lobe
+ *  n_dot_v    [0,1]    cosine between unit normal and direction to the viewer
+ *  n_dot_l    [0,1]    cosine between unit normal and direction to the light
+ *  fresnel0   [0,1]    per component
+ *  fresnel90  [0,1]    see hdrp_brdf_fresnel90
+ *  returns    [0,inf)  1/sr, per component
+ *  edges      0 where either direction is grazing: such light escapes at the first bounce
+ *  error      <= 0.004 absolute, of the albedo for fresnel0 = 1 and n_dot_v of at least 0.05
+ *             @accuracy brdf_multiscatter
+ *  error      <= 0.009 absolute, of the albedo for fresnel0 = 1 at any view
+ *             @accuracy brdf_multiscatter_grazing
+ *  source     Kulla and Conty 2017, "Revisiting Physically Based Shading at Imageworks", after
+ *             Kelemen and Szirmay-Kalos 2001, "A Microfacet Based Coupled Specular-Matte BRDF Model
+ *             with Importance Sampling" */
+HDRP_FN hdrp_v3 hdrp_brdf_multiscatter(hdrp_brdf_fgd_fit fit, float n_dot_v, float n_dot_l,
+                                       hdrp_v3 fresnel0, float fresnel90)
+{
+    float v = 1.0f - hdrp_brdf_fgd_from_fit(fit, n_dot_v).albedo;
+    float l = 1.0f - hdrp_brdf_fgd_from_fit(fit, n_dot_l).albedo;
+    return hdrp_v3_scale(hdrp_brdf_bounces_make(fit, fresnel0, fresnel90).reflected,
+                         v * l * HDRP_INV_PI / fit.mean_loss);
 }
 
 /** Albedo of the single-scattering specular lobe: what it reflects of a white environment.
@@ -760,7 +848,7 @@ HDRP_FN hdrp_v3 hdrp_brdf_specular_albedo(hdrp_brdf_fgd fgd, hdrp_v3 fresnel0, f
  *  perceptual_roughness  [0,1]
  *  returns               [0,2]   1/sr, for a white surface
  *  edges                 albedo 1.04 at normal incidence, 1.56 at grazing (roughness 1)
- *  error                 <= 8e-7 relative  @accuracy brdf_diffuse_disney
+ *  error                 <= 4.5e-7 relative  @accuracy brdf_diffuse_disney
  *  source                Burley 2012, "Physically-Based Shading at Disney", section 5.3
  *  note                  2 cos^2 of the half angle is 1 + l_dot_v */
 HDRP_FN float hdrp_brdf_diffuse_disney(float n_dot_v, float n_dot_l, float l_dot_v,
@@ -779,7 +867,7 @@ HDRP_FN float hdrp_brdf_diffuse_disney(float n_dot_v, float n_dot_l, float l_dot
  *  perceptual_roughness  [0,1]
  *  returns               [0,2]   1/sr, for a white surface
  *  edges                 albedo up to 1.0 at normal incidence, still 1.1 at grazing
- *  error                 <= 1e-6 relative  @accuracy brdf_diffuse_disney_normalized
+ *  error                 <= 2.5e-7 absolute  @accuracy brdf_diffuse_disney_normalized
  *  source                Lagarde and de Rousiers 2014, "Moving Frostbite to Physically Based
  *                        Rendering", listing 1 */
 HDRP_FN float hdrp_brdf_diffuse_disney_normalized(float n_dot_v, float n_dot_l, float l_dot_v,
@@ -793,54 +881,37 @@ HDRP_FN float hdrp_brdf_diffuse_disney_normalized(float n_dot_v, float n_dot_l, 
     return HDRP_INV_PI * factor * fl * fv;
 }
 
-HDRP_FN float hdrp_i_brdf_diffuse_share(hdrp_i_brdf_split s, float f0, float f90)
-{
-    float kept = 1.0f - f90 * s.ratio;
-    return kept + s.loss * (1.0f - (1.0f - f0) * kept);
-}
-
 /** Light that a specular lobe leaves to the diffuse one in one direction, over 1 - F0.
- *  fit        valid  made by hdrp_brdf_fgd_fit_make at the roughness of the specular lobe
- *  n_dot_x    [0,1]  cosine between unit normal and direction
- *  fresnel0   [0,1]  of the specular lobe, per component
+ *  fgd        valid  at the direction and the roughness of the lobe
+ *  bounces    valid  of the same lobe
  *  fresnel90  [0,1]  see hdrp_brdf_fresnel90
- *  returns    [0,2]  per component
+ *  returns    [0,3]  per component
  *  edges      finite for fresnel0 = 1, where the light and 1 - F0 both vanish
  *  error      none: see hdrp_brdf_diffuse
  *  source     Kelemen and Szirmay-Kalos 2001, "A Microfacet Based Coupled Specular-Matte BRDF Model
- *             with Importance Sampling", eq. 5
- *  note       the multiscattered albedo is E = (F0 + (1 - F0) f90 ratio) (1 - (1 - F0) loss), with
- *             the ratio and the loss of the fit; this is (1 - E) / (1 - F0), factor by factor */
-HDRP_FN hdrp_v3 hdrp_brdf_diffuse_share(hdrp_brdf_fgd_fit fit, float n_dot_x, hdrp_v3 fresnel0,
+ *             with Importance Sampling"
+ *  note       what enters at the first bounce, and at the later ones. With E the albedo of the
+ *             specular lobe and all its bounces it is (1 - E) / (1 - F0), without cancellation */
+HDRP_FN hdrp_v3 hdrp_brdf_diffuse_share(hdrp_brdf_fgd fgd, hdrp_brdf_bounces bounces,
                                         float fresnel90)
 {
-    hdrp_i_brdf_split s = hdrp_i_brdf_split_from_fit(fit, n_dot_x);
-    return hdrp_v3_make(hdrp_i_brdf_diffuse_share(s, fresnel0.x, fresnel90),
-                        hdrp_i_brdf_diffuse_share(s, fresnel0.y, fresnel90),
-                        hdrp_i_brdf_diffuse_share(s, fresnel0.z, fresnel90));
-}
-
-HDRP_FN float hdrp_i_brdf_diffuse_share_mean(hdrp_brdf_fgd_fit fit, float f0, float f90)
-{
-    float kept = 1.0f - f90 * fit.mean_ratio;
-    float both = kept - fit.mean_albedo + f90 * fit.mean_schlick;
-    return kept + (1.0f - fit.mean_albedo) - (1.0f - f0) * both;
+    float first = fgd.albedo - fresnel90 * fgd.schlick;
+    return hdrp_v3_mad(hdrp_v3_splat(first), bounces.passed, 1.0f - fgd.albedo);
 }
 
 /** Cosine-weighted mean of hdrp_brdf_diffuse_share over the hemisphere.
  *  fit        valid    made by hdrp_brdf_fgd_fit_make at the roughness of the specular lobe
- *  fresnel0   [0,1]    of the specular lobe, per component
+ *  bounces    valid    of the same lobe
  *  fresnel90  [0,1]    see hdrp_brdf_fresnel90
  *  returns    [0.5,2]  per component
  *  edges      1 where both reflectances are 0 and the surface is smooth
- *  error      <= 0.003 relative  @accuracy brdf_diffuse_share_mean
- *  source     as hdrp_brdf_diffuse_share */
-HDRP_FN hdrp_v3 hdrp_brdf_diffuse_share_mean(hdrp_brdf_fgd_fit fit, hdrp_v3 fresnel0,
+ *  error      <= 8.5e-4 relative  @accuracy brdf_diffuse_share_mean
+ *  source     our own fit of the mean, by tools/fit_brdf.py */
+HDRP_FN hdrp_v3 hdrp_brdf_diffuse_share_mean(hdrp_brdf_fgd_fit fit, hdrp_brdf_bounces bounces,
                                              float fresnel90)
 {
-    return hdrp_v3_make(hdrp_i_brdf_diffuse_share_mean(fit, fresnel0.x, fresnel90),
-                        hdrp_i_brdf_diffuse_share_mean(fit, fresnel0.y, fresnel90),
-                        hdrp_i_brdf_diffuse_share_mean(fit, fresnel0.z, fresnel90));
+    float first = 1.0f - fit.mean_loss - fresnel90 * fit.mean_schlick;
+    return hdrp_v3_mad(hdrp_v3_splat(first), bounces.passed, fit.mean_loss);
 }
 
 /** Diffuse lobe of a surface whose specular lobe reflects first: the recommended one.
@@ -854,16 +925,16 @@ HDRP_FN hdrp_v3 hdrp_brdf_diffuse_share_mean(hdrp_brdf_fgd_fit fit, hdrp_v3 fres
  *  returns    [0,1]  1/sr, for a white diffuse albedo, per component
  *  edges      1/pi for a smooth surface without specular, 0 for fresnel0 = 1
  *  error      <= 0.005 absolute, of the sum of both albedos above 1  @accuracy brdf_diffuse_gain
- *  error      <= 0.03 absolute, of the sum of both albedos below 1, from n_dot_v of 0.15 upwards
- *             @accuracy brdf_diffuse_loss
+ *  error      <= 0.01 absolute, of the sum of both albedos below 1  @accuracy brdf_diffuse_loss
  *  source     Kelemen and Szirmay-Kalos 2001, "A Microfacet Based Coupled Specular-Matte BRDF Model
- *             with Importance Sampling", eq. 5, with the multiscattered GGX albedo */
+ *             with Importance Sampling", with the multiscattered GGX albedo */
 HDRP_FN hdrp_v3 hdrp_brdf_diffuse(hdrp_brdf_fgd_fit fit, float n_dot_v, float n_dot_l,
                                   hdrp_v3 fresnel0, float fresnel90)
 {
-    hdrp_v3 v = hdrp_brdf_diffuse_share(fit, n_dot_v, fresnel0, fresnel90);
-    hdrp_v3 l = hdrp_brdf_diffuse_share(fit, n_dot_l, fresnel0, fresnel90);
-    hdrp_v3 mean = hdrp_brdf_diffuse_share_mean(fit, fresnel0, fresnel90);
+    hdrp_brdf_bounces bounces = hdrp_brdf_bounces_make(fit, fresnel0, fresnel90);
+    hdrp_v3 v = hdrp_brdf_diffuse_share(hdrp_brdf_fgd_from_fit(fit, n_dot_v), bounces, fresnel90);
+    hdrp_v3 l = hdrp_brdf_diffuse_share(hdrp_brdf_fgd_from_fit(fit, n_dot_l), bounces, fresnel90);
+    hdrp_v3 mean = hdrp_brdf_diffuse_share_mean(fit, bounces, fresnel90);
     return hdrp_v3_make(HDRP_INV_PI * (1.0f - fresnel0.x) * v.x * l.x / mean.x,
                         HDRP_INV_PI * (1.0f - fresnel0.y) * v.y * l.y / mean.y,
                         HDRP_INV_PI * (1.0f - fresnel0.z) * v.z * l.z / mean.z);
@@ -880,30 +951,30 @@ HDRP_FN hdrp_v3 hdrp_brdf_diffuse(hdrp_brdf_fgd_fit fit, float n_dot_v, float n_
 HDRP_FN hdrp_v3 hdrp_i_brdf_film_spectrum(float opd_um)
 {
     float o2 = opd_um * opd_um;
-    float a = hdrp_exp(-0.157538609f * o2) * hdrp_cos(10.4604763f * opd_um);
-    float b = hdrp_exp(-0.368638439f * o2) * hdrp_cos(11.3425640f * opd_um);
-    float c = hdrp_exp(-0.252454787f * o2) * hdrp_cos(13.9199948f * opd_um);
-    return hdrp_v3_make(1.892718684f * a - 0.923437728f * b + 0.030719044f * c,
-                        -0.554620936f * a + 1.691940274f * b - 0.137319338f * c,
-                        0.008705372f * a - 0.175575885f * b + 1.166870513f * c);
+    float a = hdrp_exp(-0.157541568f * o2) * hdrp_cos(10.4604743f * opd_um);
+    float b = hdrp_exp(-0.368619415f * o2) * hdrp_cos(11.342566f * opd_um);
+    float c = hdrp_exp(-0.252452653f * o2) * hdrp_cos(13.9199993f * opd_um);
+    return hdrp_v3_make(1.89250954f * a - 0.923264807f * b + 0.0307552715f * c,
+                        -0.554621099f * a + 1.69194072f * b - 0.13731962f * c,
+                        0.00870222753f * a - 0.175570875f * b + 1.16686865f * c);
 }
 
 /** The same with six Gaussians: 0.008 of worst error. */
 HDRP_FN hdrp_v3 hdrp_i_brdf_film_spectrum_exact(float opd_um)
 {
     float o2 = opd_um * opd_um;
-    float a = hdrp_exp(-0.107836167f * o2) * hdrp_cos(10.3351997f * opd_um);
-    float b = hdrp_exp(-0.211576733f * o2) * hdrp_cos(11.0886415f * opd_um);
-    float c = hdrp_exp(-0.153762793f * o2) * hdrp_cos(13.1971941f * opd_um);
-    float d = hdrp_exp(-0.124425748f * o2) * hdrp_cos(11.9445793f * opd_um);
-    float e = hdrp_exp(-0.0475187908f * o2) * hdrp_cos(13.5356095f * opd_um);
-    float f = hdrp_exp(-0.129010028f * o2) * hdrp_cos(14.2566602f * opd_um);
-    float red = 1.271409553f * a + 0.157203887f * b - 0.116461528f * c - 0.422732810f * d;
-    float green = -0.333994405f * a + 0.920465035f * b + 0.091096306f * c + 0.455054326f * d;
-    float blue = 0.012027847f * a - 0.126491949f * b + 0.289531482f * c - 0.034983328f * d;
-    return hdrp_v3_make(red + 0.028005091f * e + 0.082575807f * f,
-                        green - 0.037034974f * e - 0.095586288f * f,
-                        blue + 0.158725085f * e + 0.701190863f * f);
+    float a = hdrp_exp(-0.107845039f * o2) * hdrp_cos(10.3352171f * opd_um);
+    float b = hdrp_exp(-0.211596315f * o2) * hdrp_cos(11.0887082f * opd_um);
+    float c = hdrp_exp(-0.124406963f * o2) * hdrp_cos(11.9446375f * opd_um);
+    float d = hdrp_exp(-0.153789368f * o2) * hdrp_cos(13.1973182f * opd_um);
+    float e = hdrp_exp(-0.0475148514f * o2) * hdrp_cos(13.5356048f * opd_um);
+    float f = hdrp_exp(-0.129011908f * o2) * hdrp_cos(14.2566701f * opd_um);
+    float red = 1.27137633f * a + 0.157041905f * b - 0.422586948f * c;
+    float green = -0.334036346f * a + 0.920639558f * b + 0.454924698f * c;
+    float blue = 0.0120286391f * a - 0.126506741f * b - 0.0349705175f * c;
+    return hdrp_v3_make(red - 0.116456445f * d + 0.0280163089f * e + 0.0826088471f * f,
+                        green + 0.0911263336f * d - 0.0370514955f * e - 0.0956027482f * f,
+                        blue + 0.289599047f * d + 0.158685173f * e + 0.701164399f * f);
 }
 
 /* One interface for one polarisation: amplitude and transmitted share. */
@@ -1072,8 +1143,8 @@ HDRP_FN float hdrp_i_brdf_series_close(hdrp_i_brdf_series r, float spectrum)
  *  fresnel0      [0,1]     of the base against air, per channel; taken as a dielectric of that F0
  *  returns       [0,1]     linear Rec.709, colours out of gamut are limited
  *  edges         as hdrp_brdf_film
- *  error         <= 0.2 absolute, at grazing over a metal  @accuracy brdf_film_exact
- *  error         <= 0.0006 absolute, mean over the domain  @accuracy brdf_film_exact_mean
+ *  error         <= 0.003 absolute, at grazing over a metal  @accuracy brdf_film_exact
+ *  error         <= 3.5e-4 absolute, mean over the domain  @accuracy brdf_film_exact_mean
  *  source        Born and Wolf 1999, "Principles of Optics", section 1.6.4, integrated over the
  *                colour-matching functions term by term
  *  note          what is left is the resonance of a cavity between two mirrors at grazing, whose
@@ -1109,7 +1180,7 @@ HDRP_FN hdrp_v3 hdrp_brdf_film_exact(float cos_theta, float outer_ior, float fil
  *  wavelength_nm  [300,1000]
  *  returns        [0,1]
  *  edges          1 at grazing
- *  error          <= 2e-3 absolute  @accuracy brdf_film_airy
+ *  error          <= 3.5e-5 absolute  @accuracy brdf_film_airy
  *  source         Born and Wolf 1999, "Principles of Optics", section 1.6.4, eq. 58
  *  note           1 + 2 q cos(phase) + q^2 as (1 + q)^2 - 4 q sin^2(phase / 2) */
 HDRP_FN float hdrp_brdf_film_airy(float cos_theta, float outer_ior, float film_ior, float base_ior,
@@ -1174,21 +1245,19 @@ HDRP_FN hdrp_v3 hdrp_brdf_film_fast(float cos_theta, float outer_ior, float film
                         hdrp_i_brdf_film_fast_channel(r12, r23.z, s1.z, s2.z));
 }
 
-/** F0 of a Schlick curve that goes through a given reflectance.
+/** F0 of the Schlick curve that goes through a given reflectance.
  *  f        [0,1]  reflectance at u
  *  u        [0,1]  cosine between light and half vector
  *  returns  [0,1]
- *  edges    towards grazing, where every Schlick curve meets, the result tends to f itself
- *  error    <= 3e-5 absolute, in hdrp_brdf_f_schlick of the result, for u >= 0.1
+ *  edges    0 where f is below the curve of F0 = 0, and at u = 0, where all curves meet
+ *  error    <= 3e-7 absolute, in hdrp_brdf_f_schlick of the result, for u of at least 0.1
  *           @accuracy brdf_fresnel0_from_schlick
- *  source   Schlick 1994, "An Inexpensive BRDF Model for Physically-based Rendering", eq. 15
- *           (inverted) */
+ *  source   Schlick 1994, "An Inexpensive BRDF Model for Physically-based Rendering" (inverted)
+ *  note     an error of f is amplified by 1 / (1 - (1 - u)^5): 2.4 at u = 0.1, 21 at 0.01 */
 HDRP_FN float hdrp_brdf_fresnel0_from_schlick(float f, float u)
 {
     float w = hdrp_brdf_schlick_weight(u);
-    float inverse = hdrp_saturate((f - w) / hdrp_max(1.0f - w, HDRP_FLT_EPSILON));
-    /* Above a weight of 0.6 (u < 0.1) the inverse only amplifies noise: fade to f. */
-    return hdrp_lerp(inverse, f, hdrp_saturate((w - 0.6f) * (1.0f / 0.4f)));
+    return hdrp_saturate((f - w) / hdrp_max(1.0f - w, HDRP_FLT_EPSILON));
 }
 
 /* >>transmission
@@ -1211,7 +1280,7 @@ HDRP_TYPEDEF(hdrp_brdf_refraction)
  *  eta      [0.25,4]  IOR of the near side over IOR of the far side
  *  returns  valid     where total reflection leaves none, the mirror direction with transmits 0
  *  edges    eta = 1 gives -v
- *  error    <= 1e-6 absolute, per component, away from the critical angle
+ *  error    <= 4e-6 absolute, per component, away from the critical angle
  *           @accuracy brdf_refract
  *  source   Born and Wolf 1999, "Principles of Optics", section 1.5.1 (Snell's law) */
 HDRP_FN hdrp_brdf_refraction hdrp_brdf_refract(hdrp_v3 v, hdrp_v3 n, float eta)
@@ -1234,7 +1303,7 @@ HDRP_FN hdrp_brdf_refraction hdrp_brdf_refract(hdrp_v3 v, hdrp_v3 n, float eta)
  *  returns                 [0,1]    per component
  *  edges                   1 for distance 0, whatever the volume; else 0 for a black colour or an
  *                          attenuation distance of 0
- *  error                   <= 3e-6 absolute  @accuracy brdf_volume_transmittance
+ *  error                   <= 8e-8 absolute  @accuracy brdf_volume_transmittance
  *  source                  Beer-Lambert law, in the terms of glTF's KHR_materials_volume */
 HDRP_FN hdrp_v3 hdrp_brdf_volume_transmittance(hdrp_v3 attenuation_color,
                                                float attenuation_distance_m, float distance_m)
@@ -1270,7 +1339,7 @@ HDRP_FN float hdrp_brdf_refraction_perceptual_roughness(float perceptual_roughne
  *  returns  [0,inf)    1/sr, before colour and absorption; Fresnel transmission is included
  *  edges    0 where v or l is on the wrong side and beyond the critical angle; eta within
  *           HDRP_BRDF_ETA_MARGIN of 1 acts as that far from it
- *  error    <= 2e-4 relative, alpha of at least 0.05 and cosines of at least 0.05
+ *  error    <= 1.6e-5 relative, alpha of at least 0.05 and cosines of at least 0.05
  *           @accuracy brdf_btdf_ggx
  *  source   Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces", eq. 21
  *  note     scaled by eta^2, as for an engine that keeps L / ior^2 in a volume: a white furnace
@@ -1296,25 +1365,28 @@ HDRP_FN float hdrp_brdf_btdf_ggx(hdrp_v3 n, hdrp_v3 v, hdrp_v3 l, float alpha, f
 }
 
 /** Rough transmission through a thin wall: BTDF times the cosine of l.
- *  n         unit      normal on the side of v
- *  v         unit      near side, towards the viewer
- *  l         unit      far side, towards the light
- *  alpha     [0,1]     GGX width
- *  fresnel0  [0,1]     of one side of the wall
- *  returns   [0,inf)   1/sr, before colour; Fresnel transmission is included
- *  edges     0 where v or l is on the wrong side
- *  error     none: the reflective lobe with l mirrored to the side of v, and 1 - F in place of F
- *  source    glTF 2.0, KHR_materials_transmission, "Implementation Notes" */
-HDRP_FN float hdrp_brdf_btdf_thin_ggx(hdrp_v3 n, hdrp_v3 v, hdrp_v3 l, float alpha, float fresnel0)
+ *  n          unit     normal on the side of v
+ *  v          unit     near side, towards the viewer
+ *  l          unit     far side, towards the light
+ *  alpha      [0,1]    GGX width
+ *  fresnel0   [0,1]    of the wall, per component
+ *  fresnel90  [0,1]    see hdrp_brdf_fresnel90
+ *  returns    [0,inf)  1/sr, before colour; Fresnel transmission is included
+ *  edges      0 where v or l is on the wrong side
+ *  error      none: the reflective lobe with l mirrored to the side of v, and 1 - F in place of F
+ *  source     glTF 2.0, KHR_materials_transmission, "Implementation Notes" */
+HDRP_FN hdrp_v3 hdrp_brdf_btdf_thin_ggx(hdrp_v3 n, hdrp_v3 v, hdrp_v3 l, float alpha,
+                                        hdrp_v3 fresnel0, float fresnel90)
 {
     hdrp_v3 mirrored = hdrp_v3_mad(l, n, -2.0f * hdrp_v3_dot(n, l));
     hdrp_v3 h = hdrp_brdf_half_vector(mirrored, v, n);
-    float n_dot_v = hdrp_v3_dot(n, v);
-    float n_dot_l = hdrp_v3_dot(n, mirrored);
-    float dv = hdrp_brdf_d_ggx_vectors(n, h, alpha) *
-               hdrp_brdf_v_smith_ggx(hdrp_max(n_dot_l, 0.0f), hdrp_max(n_dot_v, 0.0f), alpha);
-    float f = hdrp_brdf_f_schlick(fresnel0, 1.0f, hdrp_saturate(hdrp_v3_dot(v, h)));
-    return hdrp_min(n_dot_v, n_dot_l) > 0.0f ? (1.0f - f) * dv * n_dot_l : 0.0f;
+    float n_dot_v = hdrp_saturate(hdrp_v3_dot(n, v));
+    float n_dot_l = hdrp_saturate(hdrp_v3_dot(n, mirrored));
+    float dv =
+        hdrp_brdf_d_ggx_vectors(n, h, alpha) * hdrp_brdf_v_smith_ggx(n_dot_l, n_dot_v, alpha);
+    hdrp_v3 f = hdrp_brdf_f_schlick_rgb(fresnel0, fresnel90, hdrp_v3_dot(v, h));
+    float both = n_dot_v > 0.0f ? dv * n_dot_l : 0.0f;
+    return hdrp_v3_scale(hdrp_v3_sub(hdrp_v3_splat(1.0f), f), both);
 }
 
 /* >>specular antialiasing
@@ -1333,7 +1405,7 @@ HDRP_FN float hdrp_brdf_variance_from_derivatives(hdrp_v3 dndx, hdrp_v3 dndy, fl
                                                   float limit)
 {
     float square = hdrp_v3_dot(dndx, dndx) + hdrp_v3_dot(dndy, dndy);
-    return hdrp_clamp(2.0f * strength * hdrp_min(square, 4.0f), 0.0f, limit);
+    return hdrp_min(2.0f * strength * hdrp_clamp(square, 0.0f, 4.0f), limit);
 }
 
 /** Variance of the normals under a texel, from the length of their average.
@@ -1354,7 +1426,7 @@ HDRP_FN float hdrp_brdf_variance_from_average_normal(float average_length)
  *  variance              [0,1]  of the normals, as given by the functions above; sums add up
  *  returns               [0,1]
  *  edges                 unchanged for variance 0, never less than perceptual_roughness
- *  error                 <= 2.5e-7 absolute  @accuracy brdf_perceptual_roughness_filtered
+ *  error                 <= 8.5e-8 absolute  @accuracy brdf_perceptual_roughness_filtered
  *  source                Kaplanyan et al. 2016, "Filtering Distributions of Normals for Shading
  *                        Antialiasing", eq. 8 */
 HDRP_FN float hdrp_brdf_perceptual_roughness_filtered(float perceptual_roughness, float variance)

@@ -495,9 +495,9 @@ HDRP_API hdrp_result hdrp_env_stats_from_rows(const hdrp_env_image* image, const
  *  source   Lagarde et al. 2016, "An Artist-Friendly Workflow for Panoramic HDRI" (the idea);
  *           Lagarde and Golubev 2018 sample the sphere instead, see the slide on HDRI
  *  note     texels count as areas of constant radiance and are weighed in closed form: a constant
- *           sky L gives pi L, and a sun of one texel counts in full. The published loop over steps of
- *           0.005 rad reads a constant sky 2.8e-4 too bright, and a disc of 0.53 degrees wrong by
- *           tens of percent, either way */
+ *           sky L gives pi L, and a sun of one texel counts in full. The published loop over steps
+ *           of 0.005 rad reads a constant sky 2.8e-4 too bright, and a disc of 0.53 degrees wrong
+ *           by tens of percent, either way */
 HDRP_API hdrp_result hdrp_env_measure(const hdrp_env_image* image, hdrp_env_stats* stats);
 
 /** Factor that brings an image to a wanted illuminance.

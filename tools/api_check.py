@@ -212,7 +212,7 @@ def check_claims(tree):
 def check_coverage(tree):
     """Every public function is named by a unit test or an entry of the registry."""
     text = "".join(p.read_text(encoding="utf-8") for folder in ("unit", "accuracy")
-                   for p in sorted((tree.root / "tests" / folder).glob("*.c")))
+                   for p in sorted((tree.root / "tests" / folder).glob("*.[ch]")))
     words = set(re.findall(r"\bhdrp_\w+", hdrp_api.blank_comments(text)))
     for header, function in tree.functions():
         if function.is_public and function.name not in words:

@@ -27,8 +27,39 @@ static void fresnel0_error(acc* a)
     }
 }
 
+/* The specular colour that the result stands for: 0.04 (1 - m) + base m, with the base that gives
+ * the diffuse colour. */
+static void metallic_from_colors_error(acc* a)
+{
+    for (int i = 0; i < 100000; ++i) {
+        double metallic = acc_uniform(a, 0.0, 0.99), base = acc_uniform(a, 0.04, 1.0);
+        float diffuse = acc_float(base * (1.0 - metallic));
+        float specular = acc_float(0.04 + (base - 0.04) * metallic);
+        double m = (double)hdrp_brdf_metallic_from_colors(diffuse, specular);
+        double back = 0.04 * (1.0 - m) + (double)diffuse / (1.0 - m) * m;
+        ACC_ADD(a, fabs(back - (double)specular), "diffuse %.9g, specular %.9g", (double)diffuse,
+                (double)specular);
+    }
+}
+
+/* Reflected is what is not transmitted: 1 - 4 n / (n + 1)^2. */
+static void dielectric_fresnel0_error(acc* a)
+{
+    for (int i = 0; i < 100000; ++i) {
+        float ior = acc_float(acc_uniform(a, 1.0, 4.0)), tint = acc_float(acc_uniform(a, 0.0, 2.0));
+        float weight = acc_float(acc_uniform(a, 0.0, 1.0));
+        double n = (double)ior, f0 = 1.0 - 4.0 * n / ((n + 1.0) * (n + 1.0));
+        double reference = fmin((double)tint * f0, 1.0) * (double)weight;
+        float m = hdrp_brdf_dielectric_fresnel0(ior, hdrp_v3_splat(tint), weight).z;
+        ACC_ADD(a, fabs((double)m - reference), "IOR %.9g, tint %.9g, weight %.9g", n, (double)tint,
+                (double)weight);
+    }
+}
+
 const acc_entry acc_brdf[] = {
     {"brdf_diffuse_color", diffuse_color_error},
     {"brdf_fresnel0", fresnel0_error},
+    {"brdf_metallic_from_colors", metallic_from_colors_error},
+    {"brdf_dielectric_fresnel0", dielectric_fresnel0_error},
     {NULL, NULL},
 };

@@ -1,0 +1,216 @@
+/* acc_brdf_film.c - accuracy of the thin film of hdrp_brdf_lobes.h.
+ * SPDX-License-Identifier: MIT
+ *
+ * The reference sums complex amplitudes of both polarisations for every nanometre of the CIE 1931
+ * 2-degree observer, weights them so that equal energy is white, and limits the colour to [0,1]. */
+#include <complex.h>
+
+#include "accuracy.h"
+
+#include "cie_observers.h"
+#include "hdrp_brdf_lobes.h"
+
+#define PI         3.14159265358979323846
+#define FIRST_NM   360
+#define LAST_NM    830
+#define COUNT      3000
+#define MAX_F0     0.999 /* the amplitude of a perfect mirror leaves nothing to interfere */
+#define TYPICAL_NM 1200.0
+
+typedef struct film_input {
+    float cosine, outer, ior, nm, f0;
+} film_input;
+
+/* Response of linear Rec.709 to one nanometre; the sum over all is 1 for each channel. */
+static const double* sensitivity(int nm)
+{
+    static double table[LAST_NM - FIRST_NM + 1][3];
+    static const double rec709[3][3] = {{3.2404542, -1.5371385, -0.4985314},
+                                        {-0.9692660, 1.8760108, 0.0415560},
+                                        {0.0556434, -0.2040259, 1.0572252}};
+    if (table[0][0] == 0.0) {
+        double sum[3] = {0.0, 0.0, 0.0};
+        for (int i = 0; i <= LAST_NM - FIRST_NM; ++i) {
+            int k = i / 5 < CIE_COUNT - 1 ? i / 5 : CIE_COUNT - 2;
+            double t = i / 5.0 - k;
+            for (int c = 0; c < 3; ++c) {
+                for (int xyz = 0; xyz < 3; ++xyz) {
+                    table[i][c] += rec709[c][xyz] * ((1.0 - t) * cie_1931_2_degree[k][xyz] +
+                                                     t * cie_1931_2_degree[k + 1][xyz]);
+                }
+                sum[c] += table[i][c];
+            }
+        }
+        for (int i = 0; i <= LAST_NM - FIRST_NM; ++i) {
+            for (int c = 0; c < 3; ++c) {
+                table[i][c] /= sum[c];
+            }
+        }
+    }
+    return table[nm - FIRST_NM];
+}
+
+typedef struct stack {
+    double complex top[2], bottom[2]; /* amplitudes, s and p */
+    double complex path_nm;           /* optical path difference */
+} stack;
+
+static stack make_stack(double c1, double n1, double n2, double n3, double nm)
+{
+    stack s;
+    double sine = n1 * sqrt((1.0 - c1) * (1.0 + c1));
+    double complex c2 = csqrt(1.0 - sine * sine / (n2 * n2));
+    double complex c3 = csqrt(1.0 - sine * sine / (n3 * n3));
+    s.top[0] = (n1 * c1 - n2 * c2) / (n1 * c1 + n2 * c2);
+    s.top[1] = (n2 * c1 - n1 * c2) / (n2 * c1 + n1 * c2);
+    s.bottom[0] = (n2 * c2 - n3 * c3) / (n2 * c2 + n3 * c3);
+    s.bottom[1] = (n3 * c2 - n2 * c3) / (n3 * c2 + n2 * c3);
+    s.path_nm = 2.0 * n2 * nm * c2;
+    return s;
+}
+
+static double airy(const stack* s, double wavelength_nm)
+{
+    double complex turn = cexp(2.0 * PI * (double complex)I * s->path_nm / wavelength_nm);
+    double sum = 0.0;
+    for (int p = 0; p < 2; ++p) {
+        double complex r =
+            (s->top[p] + s->bottom[p] * turn) / (1.0 + s->top[p] * s->bottom[p] * turn);
+        sum += 0.5 * creal(r * conj(r));
+    }
+    return sum;
+}
+
+static double ior_of(double f0)
+{
+    return (1.0 + sqrt(f0)) / (1.0 - sqrt(f0));
+}
+
+static void reference_color(film_input in, double rgb[3])
+{
+    stack s = make_stack((double)in.cosine, (double)in.outer, (double)in.ior, ior_of((double)in.f0),
+                         (double)in.nm);
+    rgb[0] = rgb[1] = rgb[2] = 0.0;
+    for (int nm = FIRST_NM; nm <= LAST_NM; ++nm) {
+        double r = airy(&s, nm);
+        for (int c = 0; c < 3; ++c) {
+            rgb[c] += r * sensitivity(nm)[c];
+        }
+    }
+    for (int c = 0; c < 3; ++c) {
+        rgb[c] = fmin(fmax(rgb[c], 0.0), 1.0);
+    }
+}
+
+/* The whole domain, evenly, and its corners: grazing views, metals, thick and thin films. Light
+ * comes from air, through the outer medium. */
+static film_input random_film(acc* a, int i)
+{
+    film_input f;
+    double steep = acc_uniform(a, 0.0, 1.0);
+    double in_air = i % 5 ? steep : steep * steep * steep + 1e-4;
+    f.outer = acc_float(i % 4 ? 1.0 : acc_uniform(a, 1.0, 1.5));
+    double sine2 = (1.0 - in_air * in_air) / ((double)f.outer * (double)f.outer);
+    f.cosine = acc_float(sqrt(1.0 - sine2));
+    f.ior = acc_float(acc_uniform(a, 1.0, 3.0));
+    f.nm = acc_float(i % 3 ? acc_uniform(a, 0.0, TYPICAL_NM) : acc_uniform(a, 0.0, 3000.0));
+    f.f0 = acc_float(i % 2   ? acc_uniform(a, 0.0, MAX_F0)
+                     : i % 4 ? 0.04
+                             : acc_uniform(a, 0.9, MAX_F0));
+    return f;
+}
+
+typedef hdrp_v3 film_function(float, float, float, float, hdrp_v3);
+
+/* References are the same for all entries, so they are made once. */
+static double film_error(acc* a, int i, film_function* f, film_input* in)
+{
+    static double references[COUNT][3];
+    static film_input inputs[COUNT];
+    static int done;
+    if (i == done) {
+        inputs[i] = random_film(a, i);
+        reference_color(inputs[i], references[i]);
+        ++done;
+    }
+    *in = inputs[i];
+    hdrp_v3 m = f(in->cosine, in->outer, in->ior, in->nm, hdrp_v3_splat(in->f0));
+    const double* r = references[i];
+    return fmax(fmax(fabs((double)m.x - r[0]), fabs((double)m.y - r[1])), fabs((double)m.z - r[2]));
+}
+
+static void largest(acc* a, film_function* f)
+{
+    for (int i = 0; i < COUNT; ++i) {
+        film_input in;
+        double error = film_error(a, i, f, &in);
+        ACC_ADD(a, error, "cosine %.6g, outer %.4g, ior %.4g, %.5g nm, F0 %.4g", (double)in.cosine,
+                (double)in.outer, (double)in.ior, (double)in.nm, (double)in.f0);
+    }
+}
+
+static void mean(acc* a, film_function* f)
+{
+    double sum = 0.0;
+    for (int i = 0; i < COUNT; ++i) {
+        film_input in;
+        sum += film_error(a, i, f, &in);
+    }
+    ACC_ADD(a, sum / COUNT, "%d films", COUNT);
+}
+
+static void film(acc* a)
+{
+    largest(a, hdrp_brdf_film);
+}
+
+static void film_mean(acc* a)
+{
+    mean(a, hdrp_brdf_film);
+}
+
+static void film_exact(acc* a)
+{
+    largest(a, hdrp_brdf_film_exact);
+}
+
+static void film_exact_mean(acc* a)
+{
+    mean(a, hdrp_brdf_film_exact);
+}
+
+static void film_fast(acc* a)
+{
+    largest(a, hdrp_brdf_film_fast);
+}
+
+static void film_fast_mean(acc* a)
+{
+    mean(a, hdrp_brdf_film_fast);
+}
+
+static void film_airy(acc* a)
+{
+    for (int i = 0; i < 20000; ++i) {
+        film_input in = random_film(a, i);
+        float wavelength = acc_float(acc_uniform(a, 300.0, 1000.0));
+        float base = acc_float(ior_of((double)in.f0));
+        stack s = make_stack((double)in.cosine, (double)in.outer, (double)in.ior, (double)base,
+                             (double)in.nm);
+        float m = hdrp_brdf_film_airy(in.cosine, in.outer, in.ior, base, in.nm, wavelength);
+        ACC_ADD(a, fabs((double)m - airy(&s, (double)wavelength)),
+                "cosine %.6g, outer %.4g, ior %.4g, %.5g nm, base %.4g, %.4g nm", (double)in.cosine,
+                (double)in.outer, (double)in.ior, (double)in.nm, (double)base, (double)wavelength);
+    }
+}
+
+const acc_entry acc_brdf_film[] = {
+    {"brdf_film", film},
+    {"brdf_film_mean", film_mean},
+    {"brdf_film_exact", film_exact},
+    {"brdf_film_exact_mean", film_exact_mean},
+    {"brdf_film_fast", film_fast},
+    {"brdf_film_fast_mean", film_fast_mean},
+    {"brdf_film_airy", film_airy},
+    {NULL, NULL},
+};
