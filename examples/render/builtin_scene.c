@@ -113,8 +113,8 @@ static void set_slot(rd_material* m, rd_slot slot, rd_builtin_texture texture)
 
 static void add_stage(builder* b)
 {
-    rd_material floor = dielectric(hdrp_v3_splat(1.0f), 1.0f);
-    rd_material plinth = dielectric(hdrp_v3_make(0.60f, 0.58f, 0.55f), 0.55f);
+    rd_material floor = dielectric(hdrp_v3_make(0.22f, 0.43f, 0.56f), 1.0f);
+    rd_material plinth = dielectric(hdrp_v3_make(0.60f, 0.585f, 0.56f), 0.5f);
     int stone;
     set_slot(&floor, RD_SLOT_BASE_COLOR, RD_TEX_FLOOR_COLOR);
     set_slot(&floor, RD_SLOT_METALLIC_ROUGHNESS, RD_TEX_FLOOR_ROUGHNESS);
@@ -229,7 +229,7 @@ static void add_iridescence(builder* b)
 static void add_transmission(builder* b)
 {
     rd_material green = glass(1.5f, 0.5f);
-    rd_material clear = glass(1.52f, 0.4f);
+    rd_material clear = glass(1.52f, 0.46f);
     rd_material thin = glass(1.5f, 0.0f);
     green.attenuation_color = hdrp_v3_make(0.25f, 0.85f, 0.65f);
     green.attenuation_distance_m = 0.35f;
@@ -239,8 +239,8 @@ static void add_transmission(builder* b)
     place(b, rd_shape_rounded_box(hdrp_v3_make(0.46f, 0.46f, 0.46f), 0.06f),
           add_material(b, &green, "green glass"),
           rd_affine_mul(translation(1.45f, 0.951f, -0.95f), rotation_y(0.65f)), "glass cube");
-    place(b, rd_shape_sphere(0.20f, 96, tiles(1.0f, 1.0f)), add_material(b, &clear, "clear glass"),
-          translation(2.05f, 0.20f, 0.30f), "glass sphere");
+    place(b, rd_shape_sphere(0.23f, 96, tiles(1.0f, 1.0f)), add_material(b, &clear, "clear glass"),
+          translation(0.20f, 0.23f, 1.60f), "glass sphere");
     place(b, rd_shape_card(0.50f, 0.62f, 0.0f, tiles(1.0f, -1.0f)),
           add_material(b, &thin, "amber sheet"),
           rd_affine_mul(translation(1.18f, 0.0f, 0.32f), rotation_y(-0.55f)), "amber sheet");
@@ -249,7 +249,7 @@ static void add_transmission(builder* b)
 /* MASK: a perforated screen and a plant. BLEND: a tinted pane with a label on it. */
 static void add_screen(builder* b)
 {
-    rd_material screen = metal(hdrp_v3_splat(0.75f), 0.45f);
+    rd_material screen = metal(hdrp_v3_make(0.91f, 0.78f, 0.55f), 0.4f);
     set_slot(&screen, RD_SLOT_BASE_COLOR, RD_TEX_SCREEN);
     screen.alpha_mode = RD_ALPHA_MASK;
     screen.double_sided = true;
@@ -268,6 +268,7 @@ static void add_plant(builder* b)
     set_slot(&leaf, RD_SLOT_BASE_COLOR, RD_TEX_LEAF);
     leaf.alpha_mode = RD_ALPHA_MASK;
     leaf.double_sided = true;
+    leaf.slab_thickness = 0.5f;
     leaves = add_material(b, &leaf, "leaf");
     place(b, rd_shape_lathe(pot, 8, 48, tiles(1.0f, 1.0f)), add_material(b, &clay, "clay"),
           translation(-2.50f, 0.34f, -0.45f), "pot");
@@ -366,20 +367,26 @@ static void add_lamps(builder* b)
     hdrp_v3 cool = hdrp_v3_make(0.62f, 0.78f, 1.0f);
     rd_light spot = light_at(RD_LIGHT_SPOT, hdrp_v3_make(-0.4f, 3.9f, 1.6f),
                              hdrp_v3_make(0.0f, 0.9f, -0.7f), hdrp_v3_make(1.0f, 0.93f, 0.84f));
-    rd_light pyramid = light_at(RD_LIGHT_PYRAMID, hdrp_v3_make(-4.2f, 2.6f, 0.6f),
-                                hdrp_v3_make(-1.4f, 0.4f, -0.9f), warm);
+    rd_light washer = light_at(RD_LIGHT_SPOT, hdrp_v3_make(0.0f, 0.12f, -2.3f),
+                               hdrp_v3_make(0.0f, 2.1f, -4.2f), warm);
+    rd_light pyramid = light_at(RD_LIGHT_PYRAMID, hdrp_v3_make(-0.9f, 3.6f, -1.6f),
+                                hdrp_v3_make(-2.75f, 1.0f, -3.6f), cool);
     rd_light box = light_at(RD_LIGHT_BOX, hdrp_v3_make(2.3f, 3.6f, -3.0f),
                             hdrp_v3_make(2.3f, 0.0f, -3.05f), cool);
     rd_light bulb = light_at(RD_LIGHT_POINT, hdrp_v3_make(0.36f, 0.06f, 0.45f),
                              hdrp_v3_make(0.0f, 0.0f, 0.0f), warm);
-    spot.intensity = 60000.0f;
+    spot.intensity = 200000.0f;
     spot.inner_angle_rad = 0.20f;
     spot.outer_angle_rad = 0.30f;
     spot.radius_m = 0.05f;
-    pyramid.intensity = 45000.0f;
-    pyramid.half_width = 0.22f;
-    pyramid.half_height = 0.16f;
-    box.intensity = 9000.0f;
+    washer.intensity = 900000.0f;
+    washer.inner_angle_rad = 0.25f;
+    washer.outer_angle_rad = 0.85f;
+    washer.radius_m = 0.04f;
+    pyramid.intensity = 500000.0f;
+    pyramid.half_width = 0.45f;
+    pyramid.half_height = 0.30f;
+    box.intensity = 30000.0f;
     box.half_width = 1.4f;
     box.half_height = 0.25f;
     box.range_m = 4.0f;
@@ -387,6 +394,7 @@ static void add_lamps(builder* b)
     bulb.range_m = 4.0f;
     bulb.radius_m = 0.06f;
     add_light(b, &spot);
+    add_light(b, &washer);
     add_light(b, &pyramid);
     add_light(b, &box);
     add_light(b, &bulb);
@@ -399,6 +407,7 @@ static void add_bulb(builder* b)
     /* What a sphere of this size needs to look as bright as its intensity: I / (pi r^2). */
     m.emission_nits =
         hdrp_v3_scale(hdrp_v3_make(1.0f, 0.72f, 0.42f), 2500.0f / (HDRP_PI * 0.06f * 0.06f));
+    m.is_lamp = true;
     place(b, rd_shape_sphere(0.06f, 48, tiles(1.0f, 1.0f)), add_material(b, &m, "bulb"),
           translation(0.36f, 0.06f, 0.45f), "bulb");
 }
@@ -406,7 +415,7 @@ static void add_bulb(builder* b)
 static void add_camera(builder* b)
 {
     hdrp_v3 eye = hdrp_v3_make(0.25f, 1.75f, 6.6f);
-    hdrp_v3 forward = hdrp_v3_normalize(hdrp_v3_sub(hdrp_v3_make(0.0f, 0.74f, -0.6f), eye));
+    hdrp_v3 forward = hdrp_v3_normalize(hdrp_v3_sub(hdrp_v3_make(0.0f, 0.80f, -0.6f), eye));
     rd_scene_camera c;
     memset(&c, 0, sizeof c);
     snprintf(c.name, RD_NAME_MAX, "display");
@@ -422,6 +431,11 @@ bool rd_scene_build_builtin(rd_scene* scene, rd_report* report)
 {
     builder b = {scene, true};
     memset(scene, 0, sizeof *scene);
+    scene->has_sky = true;
+    scene->sun_elevation_rad = 0.52f;
+    scene->ground_albedo = hdrp_v3_make(0.14f, 0.22f, 0.26f);
+    scene->sun_azimuth_rad = -1.05f;
+    scene->slab_color[0] = hdrp_v3_make(0.55f, 0.75f, 0.15f);
     b.ok = rd_builtin_textures(&scene->textures);
     add_stage(&b);
     add_rows(&b);

@@ -56,8 +56,8 @@ static hdrp_v4 weave_color(float u, float v)
     float band = smooth_step(0.38f, 0.40f, hdrp_abs(u - 0.5f)) * (1.0f - stripe);
     float fade = 0.04f * rd_fractal_noise(at(u, v, 5.0f, 0.5f), 5u, 3, 41u);
     float k = 1.0f - 0.72f * band;
-    return opaque((0.10f + fade) * k + 0.75f * band, (0.24f + fade) * k + 0.60f * band,
-                  (0.36f + fade) * k + 0.32f * band);
+    return opaque((0.58f + fade) * k + 0.75f * band, (0.40f + fade) * k + 0.64f * band,
+                  (0.22f + fade) * k + 0.46f * band);
 }
 
 /* Half the width of the blade at height y in [0, 1], with a slightly toothed edge. */

@@ -141,6 +141,16 @@ rd_ray rd_camera_ray(const rd_camera* c, float x, float y)
     return r;
 }
 
+hdrp_v2 rd_camera_project(const rd_camera* c, hdrp_v3 p)
+{
+    hdrp_v3 d = hdrp_v3_sub(p, c->eye);
+    float depth = c->orthographic ? 1.0f : hdrp_v3_dot(d, c->forward);
+    float x = hdrp_v3_dot(d, c->right) / (depth * c->half_width);
+    float y = hdrp_v3_dot(d, c->up) / (depth * c->half_height);
+    return hdrp_v2_make((0.5f + 0.5f * x) * (float)c->width_px,
+                        (0.5f - 0.5f * y) * (float)c->height_px);
+}
+
 /* Derivative of d / |d| where d moves by step. */
 static hdrp_v3 normalized_derivative(hdrp_v3 d, hdrp_v3 step)
 {

@@ -33,6 +33,9 @@ rd_camera rd_camera_orbit(rd_camera camera, float angle_rad);
 rd_ray rd_camera_ray(const rd_camera* c, float x, float y);
 rd_ray_spread rd_camera_spread(const rd_camera* c, float x, float y);
 
+/* The image position of a point, in the same units. Not a number for the plane of the eye. */
+hdrp_v2 rd_camera_project(const rd_camera* c, hdrp_v3 p);
+
 /* Where in its pixel sample i lies: the R2 sequence, whose first point is the centre. */
 hdrp_v2 rd_camera_jitter(uint32_t i, uint32_t seed);
 

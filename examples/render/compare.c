@@ -8,6 +8,8 @@
 
 /* Below this share of full scale a difference is invisible, however large relative to itself. */
 #define DARK 1e-3
+/* The same for squares, as papers on Monte Carlo methods have it. */
+#define DARK_OF_SQUARES 1e-2
 
 static double encode(float x, float scale)
 {
@@ -42,7 +44,8 @@ bool rd_compare(const float* a, const float* b, int width, int height, float sca
 {
     size_t count = (size_t)width * (size_t)height;
     double* relative = (double*)malloc((count ? count : 1) * sizeof *relative);
-    double square = 0, sum_a = 0, sum_b = 0;
+    double square = 0, relative_square = 0, sum_a = 0, sum_b = 0;
+    double floor_of_squares = DARK_OF_SQUARES / (double)scale;
     uint64_t n = 0;
     memset(out, 0, sizeof *out);
     if (!relative) {
@@ -58,12 +61,14 @@ bool rd_compare(const float* a, const float* b, int width, int height, float sca
             square += d * d / 3.0;
         }
         relative[n++] = fabs(la - lb) / fmax(fmax(la, lb), DARK / (double)scale);
+        relative_square += (la - lb) * (la - lb) / (lb * lb + floor_of_squares * floor_of_squares);
         sum_a += la;
         sum_b += lb;
     }
     out->pixels = n;
     if (n) {
         out->psnr_db = square > 0 ? -10.0 * log10(square / (double)n) : (double)INFINITY;
+        out->relative_mse = relative_square / (double)n;
         out->mean_ratio = sum_b > 0 ? sum_a / sum_b : 1.0;
         summarize(relative, n, out);
     }

@@ -10,7 +10,8 @@ typedef struct rd_difference {
     double relative_mean; /* of |a - b| / max(a, b), over pixels, by luminance */
     double relative_p999; /* its 99.9th percentile */
     double relative_max;
-    double mean_ratio; /* mean luminance of a over that of b */
+    double relative_mse; /* of (a - b)^2 / (b^2 + 1 % of full scale, squared), by luminance */
+    double mean_ratio;   /* mean luminance of a over that of b */
 } rd_difference;
 
 /* Both RGBA of the same size. `scale` is the exposure before clipping. */

@@ -1,5 +1,6 @@
 /* hdrp_render: renders a glTF scene with nothing but the public hdrp headers. */
 #include "compare.h"
+#include "exposure.h"
 #include "file.h"
 #include "options.h"
 #include "picture.h"
@@ -21,6 +22,9 @@ typedef struct app {
     rd_image_f32 env;
     rd_image_f32 reference; /* of --compare */
     rd_trace* trace;
+    rd_environment environment;
+    rd_lighting lighting;
+    float ev100, exposure;
     rd_renderer renderer;
 } app;
 
@@ -36,6 +40,9 @@ static bool load_scene(app* a)
     rd_stats_pass(&a->stats, "load scene", rd_now_ms() - begin);
     if (!ok) {
         return false;
+    }
+    if (!(a->options.features & RD_FEATURE_TANGENTS)) {
+        rd_scene_drop_tangents(&a->scene);
     }
     begin = rd_now_ms();
     rd_progress_show(&a->progress, "textures", 0.5, 1);
@@ -72,6 +79,53 @@ static bool check_outputs(app* a)
            (!a->options.stats || rd_output_check(a->options.stats, &a->report));
 }
 
+/* The sun of the procedural sky, for scenes that do not say: behind the left shoulder. */
+#define SUN_ELEVATION_RAD 0.75f
+#define SUN_AZIMUTH_RAD   -0.65f
+
+/* A glTF file without lights says nothing about how bright its world is, but means emission of 1 to
+ * look white: under a sky of this illuminance white surfaces have a luminance of 1. */
+static float default_lux(const app* a)
+{
+    return a->options.env || a->scene.has_sky ? 0.0f : HDRP_PI;
+}
+
+/* A scene that brings its own lights is dark apart from them. */
+static bool make_environment(app* a)
+{
+    const rd_scene* s = &a->scene;
+    const hdrp_v3 dry_ground = {0.24f, 0.22f, 0.19f};
+    rd_environment_desc d;
+    if (!a->options.env && !s->has_sky && s->light_count > 0) {
+        return true;
+    }
+    d.file = a->options.env ? &a->env : NULL;
+    d.name = a->options.env ? a->options.env : "sky";
+    d.lux = a->options.env_lux > 0.0f ? a->options.env_lux : default_lux(a);
+    d.sun_elevation_rad = s->has_sky ? s->sun_elevation_rad : SUN_ELEVATION_RAD;
+    d.sun_azimuth_rad = s->has_sky ? s->sun_azimuth_rad : SUN_AZIMUTH_RAD;
+    d.ground_albedo = s->has_sky ? s->ground_albedo : dry_ground;
+    d.quality = a->options.quality;
+    rd_progress_show(&a->progress, "sky", 0.8, 1);
+    return rd_environment_make(&a->environment, &d, &a->stats, &a->report);
+}
+
+/* Pictures of surfaces need no light. */
+static bool needs_light(const app* a)
+{
+    return rd_view_stage_of(a->options.view) != RD_STAGE_MATERIAL;
+}
+
+static bool make_lighting(app* a)
+{
+    rd_lighting_desc d = {&a->scene, a->trace, &a->environment, &a->options};
+    if (!needs_light(a)) {
+        rd_lighting_make_dark(&a->lighting, &d);
+        return true;
+    }
+    return make_environment(a) && rd_lighting_make(&a->lighting, &d, &a->stats, &a->report);
+}
+
 static bool load(app* a)
 {
     double begin;
@@ -81,7 +135,7 @@ static bool load(app* a)
     begin = rd_now_ms();
     a->trace = rd_trace_build(&a->scene, &a->report);
     rd_stats_pass(&a->stats, "build BVH", rd_now_ms() - begin);
-    return a->trace != NULL;
+    return a->trace && make_lighting(a);
 }
 
 static void count_scene(app* a)
@@ -133,7 +187,7 @@ static bool write_picture(app* a, const char* path)
     double begin = rd_now_ms();
     const rd_renderer* r = &a->renderer;
     bool ok = rd_picture_write(path, r->width, r->height, r->film,
-                               rd_view_encoding(a->options.view), 1.0f, &a->report);
+                               rd_view_encoding(a->options.view), a->exposure, &a->report);
     rd_stats_pass(&a->stats, "write picture", rd_now_ms() - begin);
     return ok;
 }
@@ -147,6 +201,27 @@ static float frame_angle(const app* a, const rd_camera* camera, int frame)
     bool inside = e.x > b->low.x && e.x < b->high.x && e.y > b->low.y && e.y < b->high.y &&
                   e.z > b->low.z && e.z < b->high.z;
     return inside ? 0.3f * sinf(turn) : turn;
+}
+
+/* One exposure for all frames, so that they do not flicker. */
+static bool expose(app* a, const rd_camera* camera)
+{
+    double begin = rd_now_ms();
+    bool ok = true;
+    a->ev100 = a->options.exposure_ev100;
+    if (!a->options.has_exposure && needs_light(a)) {
+        ok = rd_exposure_meter(&a->options, &a->lighting, camera, &a->ev100, &a->report);
+        rd_stats_pass(&a->stats, "meter exposure", rd_now_ms() - begin);
+    }
+    a->exposure = hdrp_light_exposure_saturation(a->ev100);
+    rd_stats_count(&a->stats, "ev100", (double)a->ev100);
+    return ok;
+}
+
+static bool begin_rendering(app* a)
+{
+    rd_renderer_desc d = {&a->options, &a->lighting, a->exposure, &a->stats, &a->progress};
+    return rd_renderer_begin(&a->renderer, &d, &a->report);
 }
 
 static bool render_frames(app* a, const rd_camera* camera)
@@ -176,7 +251,7 @@ static bool compare(app* a)
         return true;
     }
     if (!rd_compare(a->renderer.film, a->reference.rgba, a->renderer.width, a->renderer.height,
-                    1.0f, &d)) {
+                    a->exposure, &d)) {
         return rd_fail(&a->report, a->options.compare, "out of memory");
     }
     rd_stats_error(&a->stats, "compared_pixels", (double)d.pixels);
@@ -184,15 +259,22 @@ static bool compare(app* a)
     rd_stats_error(&a->stats, "relative_mean", d.relative_mean);
     rd_stats_error(&a->stats, "relative_p999", d.relative_p999);
     rd_stats_error(&a->stats, "relative_max", d.relative_max);
+    rd_stats_error(&a->stats, "relative_mse", d.relative_mse);
     rd_stats_error(&a->stats, "mean_ratio", d.mean_ratio);
     return true;
 }
 
 static bool finish(app* a)
 {
-    rd_stats_count(&a->stats, "primary_rays", (double)a->renderer.ray_count);
-    rd_stats_count(&a->stats, "layer_hits", (double)a->renderer.layer_hit_count);
-    rd_stats_limit(&a->stats, "transparent_layers_dropped", (double)a->renderer.layers_dropped);
+    const rd_render_counts* c = &a->renderer.counts;
+    rd_stats_count(&a->stats, "primary_rays", (double)c->primary_rays);
+    rd_stats_count(&a->stats, "shadow_rays", (double)c->shadow_rays);
+    rd_stats_count(&a->stats, "occlusion_rays", (double)c->occlusion_rays);
+    rd_stats_count(&a->stats, "path_rays", (double)c->path_rays);
+    rd_stats_count(&a->stats, "deferred_samples", (double)c->deferred_samples);
+    rd_stats_count(&a->stats, "forward_samples", (double)c->forward_samples);
+    rd_stats_count(&a->stats, "layer_hits", (double)c->layer_hits);
+    rd_stats_limit(&a->stats, "transparent_layers_dropped", (double)c->layers_dropped);
     if (!compare(a)) {
         return false;
     }
@@ -212,14 +294,14 @@ static bool run(app* a)
         return false;
     }
     count_scene(a);
-    return rd_renderer_begin(&a->renderer, &a->options, &a->scene, a->trace, &a->stats,
-                             &a->progress, &a->report) &&
-           render_frames(a, &camera) && finish(a);
+    return expose(a, &camera) && begin_rendering(a) && render_frames(a, &camera) && finish(a);
 }
 
 static void release(app* a)
 {
     rd_renderer_end(&a->renderer);
+    rd_lighting_free(&a->lighting);
+    rd_environment_free(&a->environment);
     rd_trace_free(a->trace);
     rd_scene_free(&a->scene);
     rd_image_free_f32(&a->env);

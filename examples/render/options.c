@@ -21,14 +21,18 @@ static const struct {
     {"anisotropy", RD_FEATURE_ANISOTROPY},
     {"iridescence", RD_FEATURE_IRIDESCENCE},
     {"refraction", RD_FEATURE_REFRACTION},
+    {"transmission", RD_FEATURE_TRANSMISSION},
+    {"tangents", RD_FEATURE_TANGENTS},
     {"normal_maps", RD_FEATURE_NORMAL_MAPS},
     {"occlusion", RD_FEATURE_OCCLUSION},
+    {"ao", RD_FEATURE_AO},
     {"alpha_blend", RD_FEATURE_ALPHA_BLEND},
     {"lights", RD_FEATURE_LIGHTS},
+    {"sun", RD_FEATURE_SUN},
     {"shadows", RD_FEATURE_SHADOWS},
     {"environment", RD_FEATURE_ENVIRONMENT},
+    {"sky", RD_FEATURE_SKY},
     {"specular_aa", RD_FEATURE_SPECULAR_AA},
-    {"multiscatter", RD_FEATURE_MULTISCATTER},
     {"all", RD_FEATURE_ALL},
 };
 
@@ -272,7 +276,7 @@ static const struct {
     const char* help;
 } table[] = {
     {"--env", set_env, "FILE", "sky: lat-long or cube, .exr or .hdr (default: a procedural sky)"},
-    {"--env-lux", set_env_lux, "LUX", "scale the sky to this illuminance on the ground"},
+    {"--env-lux", set_env_lux, "LUX", "scale the sky to this illuminance on level ground"},
     {"--out", set_out, "FILE", ".png (tone-mapped) or .exr (linear); default hdrp_render.png"},
     {"--size", set_size, "WxH", "default 1280x720"},
     {"--backend", set_backend, "NAME", "cpu"},
@@ -339,9 +343,6 @@ static bool check_together(const rd_options* o, rd_report* report)
 {
     if (o->has_camera && o->has_eye) {
         return rd_fail(report, "--eye", "cannot be combined with --camera");
-    }
-    if (o->env_lux > 0.0f && !o->env) {
-        return rd_fail(report, "--env-lux", "needs --env");
     }
     if ((uint64_t)o->width * (uint64_t)o->height > RD_IMAGE_MAX_PIXELS) {
         return rd_fail(report, "--size", "too many pixels");

@@ -15,14 +15,20 @@ typedef enum rd_path { RD_PATH_DEFERRED, RD_PATH_FORWARD } rd_path;
 #define RD_FEATURE_IRIDESCENCE  (1u << 2)
 #define RD_FEATURE_REFRACTION   (1u << 3)
 #define RD_FEATURE_NORMAL_MAPS  (1u << 4)
-#define RD_FEATURE_OCCLUSION    (1u << 5)
-#define RD_FEATURE_ALPHA_BLEND  (1u << 6)
-#define RD_FEATURE_LIGHTS       (1u << 7)
-#define RD_FEATURE_SHADOWS      (1u << 8)
-#define RD_FEATURE_ENVIRONMENT  (1u << 9)
-#define RD_FEATURE_SPECULAR_AA  (1u << 10)
-#define RD_FEATURE_MULTISCATTER (1u << 11)
-#define RD_FEATURE_ALL          ((1u << 12) - 1u)
+#define RD_FEATURE_OCCLUSION    (1u << 5) /* maps of ambient occlusion */
+#define RD_FEATURE_AO           (1u << 6) /* short rays */
+#define RD_FEATURE_ALPHA_BLEND  (1u << 7)
+#define RD_FEATURE_LIGHTS       (1u << 8) /* all but the sky, the sun included */
+#define RD_FEATURE_SUN          (1u << 9)
+#define RD_FEATURE_SHADOWS      (1u << 10)
+#define RD_FEATURE_ENVIRONMENT  (1u << 11) /* light of the sky */
+#define RD_FEATURE_SKY          (1u << 12) /* the sky behind the scene */
+#define RD_FEATURE_SPECULAR_AA  (1u << 13)
+#define RD_FEATURE_TRANSMISSION (1u << 14) /* light crosses leaves and cloth */
+#define RD_FEATURE_TANGENTS     (1u << 15) /* of the file; without: from uv, as the file has none */
+#define RD_FEATURE_ALL          ((1u << 16) - 1u)
+/* Not for the command line: all materials are middle grey, as exposure meters want it. */
+#define RD_FEATURE_GREY_CARDS (1u << 16)
 
 typedef struct rd_options {
     const char* scene; /* NULL: the built-in one */

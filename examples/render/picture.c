@@ -2,6 +2,7 @@
 
 #include "file.h"
 #include "image.h"
+#include "tonemap.h"
 
 #include <stdlib.h>
 
@@ -26,7 +27,6 @@ static float encode(float v, rd_encoding encoding, float scale)
 {
     switch (encoding) {
     case RD_ENCODE_LIT:
-        return srgb(v * scale);
     case RD_ENCODE_COLOR:
         return srgb(v);
     case RD_ENCODE_DATA:
@@ -37,6 +37,11 @@ static float encode(float v, rd_encoding encoding, float scale)
         return v > 0.0f ? hdrp_saturate(scale / v) : 0.0f;
     }
     return 0.0f;
+}
+
+static unsigned char code(float v, rd_encoding encoding, float scale)
+{
+    return (unsigned char)(encode(v, encoding, scale) * 255.0f + 0.5f);
 }
 
 static bool write_png(const char* path, int width, int height, const float* film,
@@ -50,10 +55,13 @@ static bool write_png(const char* path, int width, int height, const float* film
     }
 #pragma omp parallel for schedule(static)
     for (size_t i = 0; i < pixels; ++i) {
-        for (size_t c = 0; c < 3; ++c) {
-            rgb[i * 3 + c] =
-                (unsigned char)(encode(film[i * 4 + c], encoding, scale) * 255.0f + 0.5f);
+        hdrp_v3 v = hdrp_v3_make(film[i * 4], film[i * 4 + 1], film[i * 4 + 2]);
+        if (encoding == RD_ENCODE_LIT) {
+            v = rd_tonemap(hdrp_v3_scale(v, scale));
         }
+        rgb[i * 3] = code(v.x, encoding, scale);
+        rgb[i * 3 + 1] = code(v.y, encoding, scale);
+        rgb[i * 3 + 2] = code(v.z, encoding, scale);
     }
     ok = rd_image_write_png(path, width, height, rgb, report);
     free(rgb);

@@ -1,34 +1,53 @@
 #include "render.h"
 
+#include "frame.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define ROWS_PER_JOB 8
-#define MAX_RUN      64 /* pixels whose rays are traced in one call */
 
 static int default_spp(rd_quality q)
 {
     return q == RD_QUALITY_FAST ? 1 : q == RD_QUALITY_BALANCED ? 4 : 64;
 }
 
-bool rd_renderer_begin(rd_renderer* r, const rd_options* options, const rd_scene* scene,
-                       const rd_trace* trace, rd_stats* stats, rd_progress* progress,
-                       rd_report* report)
+/* >>memory */
+
+static void* allocate(size_t pixels, size_t size)
 {
-    size_t pixels = (size_t)options->width * (size_t)options->height;
+    return malloc((pixels ? pixels : 1) * size);
+}
+
+static bool allocate_frame(rd_renderer* r, size_t pixels)
+{
+    r->visibility[0] = (float*)allocate(pixels, sizeof(float));
+    r->visibility[1] = (float*)allocate(pixels, sizeof(float));
+    r->lit = (hdrp_v3*)allocate(pixels, sizeof(hdrp_v3));
+    return r->visibility[0] && r->visibility[1] && r->lit &&
+           rd_gbuffer_allocate(&r->gbuffer, pixels) &&
+           rd_pyramid_begin(&r->pyramid, r->lit, r->width, r->height);
+}
+
+bool rd_renderer_begin(rd_renderer* r, const rd_renderer_desc* d, rd_report* report)
+{
+    const rd_options* o = d->options;
+    size_t pixels = (size_t)o->width * (size_t)o->height;
     memset(r, 0, sizeof *r);
-    r->options = options;
-    r->scene = scene;
-    r->trace = trace;
-    r->stats = stats;
-    r->progress = progress;
-    r->width = options->width;
-    r->height = options->height;
-    r->spp = options->spp ? options->spp : default_spp(options->quality);
-    r->hits = (rd_hit*)malloc(pixels * sizeof *r->hits);
-    r->film = (float*)malloc(pixels * 4 * sizeof *r->film);
-    if (!r->hits || !r->film) {
+    r->options = o;
+    r->lighting = d->lighting;
+    r->scene = d->lighting->scene;
+    r->trace = d->lighting->trace;
+    r->stats = d->stats;
+    r->progress = d->progress;
+    r->exposure = d->exposure;
+    r->width = o->width;
+    r->height = o->height;
+    r->spp = o->spp ? o->spp : default_spp(o->quality);
+    r->hits = (rd_hit*)allocate(pixels, sizeof *r->hits);
+    r->film = (float*)allocate(pixels, 4 * sizeof *r->film);
+    if (!r->hits || !r->film || !allocate_frame(r, pixels)) {
         rd_renderer_end(r);
         return rd_fail(report, "image", "out of memory");
     }
@@ -37,152 +56,153 @@ bool rd_renderer_begin(rd_renderer* r, const rd_options* options, const rd_scene
 
 void rd_renderer_end(rd_renderer* r)
 {
+    rd_pyramid_end(&r->pyramid);
+    rd_gbuffer_free(&r->gbuffer);
+    free(r->visibility[0]);
+    free(r->visibility[1]);
+    free(r->lit);
     free(r->hits);
     free(r->film);
     memset(r, 0, sizeof *r);
 }
 
-/* >>passes
- * A pass works on one row of a sub-frame; rows are independent jobs. */
+/* >>passes */
 
-typedef struct sub_frame {
-    rd_renderer* r;
-    hdrp_v2 jitter; /* of the sample inside each pixel */
-} sub_frame;
-
-/* What a thread needs for itself. */
-typedef struct worker {
-    rd_layers layers;
-    uint64_t ray_count, layer_hit_count;
-} worker;
-
-typedef void (*row_pass)(const sub_frame* s, worker* w, int y);
-
-static rd_ray pixel_ray(const sub_frame* s, int x, int y)
+static void visibility_row(const rd_sub_frame* s, rd_worker* w, int y)
 {
-    return rd_camera_ray(&s->r->camera, (float)x + s->jitter.x, (float)y + s->jitter.y);
-}
-
-static rd_ray_spread pixel_spread(const sub_frame* s, int x, int y)
-{
-    return rd_camera_spread(&s->r->camera, (float)x + s->jitter.x, (float)y + s->jitter.y);
-}
-
-static rd_hit* pixel_hit(const sub_frame* s, int x, int y)
-{
-    return &s->r->hits[(size_t)y * (size_t)s->r->width + (size_t)x];
-}
-
-static void visibility_row(const sub_frame* s, worker* w, int y)
-{
-    rd_ray rays[MAX_RUN];
-    for (int x = 0; x < s->r->width; x += MAX_RUN) {
-        int n = s->r->width - x < MAX_RUN ? s->r->width - x : MAX_RUN;
+    rd_ray rays[RD_RUN];
+    for (int x = 0; x < s->r->width; x += RD_RUN) {
+        int n = s->r->width - x < RD_RUN ? s->r->width - x : RD_RUN;
         for (int i = 0; i < n; ++i) {
-            rays[i] = pixel_ray(s, x + i, y);
+            rays[i] = rd_pixel_ray(s, x + i, y);
         }
-        rd_trace_closest(s->r->trace, rays, pixel_hit(s, x, y), (uint32_t)n);
+        rd_trace_closest(s->r->trace, rays, &s->r->hits[rd_pixel(s, x, y)], (uint32_t)n);
     }
-    w->ray_count += (uint64_t)s->r->width;
+    w->counts.primary_rays += (uint64_t)s->r->width;
 }
 
-/* Light from the viewer, without shadows: enough to see what was loaded. */
-static hdrp_v3 preview_color(const rd_surface* s)
+static void add_counts(rd_render_counts* sum, const rd_worker* w)
 {
-    float facing = hdrp_saturate(hdrp_v3_dot(s->brdf.normal, s->view));
-    float sky = 0.5f + 0.5f * s->brdf.normal.y;
-    hdrp_v3 c = hdrp_v3_scale(s->brdf.base_color, 0.55f * facing + 0.4f * sky);
-    return hdrp_v3_add(c, s->emission_nits);
+    sum->primary_rays += w->counts.primary_rays;
+    sum->shadow_rays += w->counts.shadow_rays + w->shade.shadow_rays;
+    sum->occlusion_rays += w->counts.occlusion_rays;
+    sum->path_rays += w->counts.path_rays;
+    sum->deferred_samples += w->counts.deferred_samples;
+    sum->forward_samples += w->counts.forward_samples;
+    sum->layer_hits += w->counts.layer_hits;
+    sum->layers_dropped += w->counts.layers_dropped + w->layers.dropped;
 }
 
-static hdrp_v3 surface_value(const sub_frame* s, const rd_surface* surface)
-{
-    rd_view view = s->r->options->view;
-    return view == RD_VIEW_LIT ? preview_color(surface)
-                               : rd_view_value(view, &s->r->camera, surface);
-}
+/* What rd_render has yet to do, for the progress bar. */
+typedef struct schedule {
+    double done, total; /* jobs */
+} schedule;
 
-static hdrp_v4 evaluate(const sub_frame* s, int x, int y, const rd_ray* ray, const rd_hit* hit)
-{
-    rd_surface surface;
-    rd_ray_spread spread = pixel_spread(s, x, y);
-    rd_surface_evaluate(s->r->scene, ray, &spread, hit, &surface);
-    return hdrp_v4_from_v3(surface_value(s, &surface), surface.alpha);
-}
-
-/* Front to back: `front` over what comes next. */
-static hdrp_v4 under(hdrp_v4 front, hdrp_v4 next)
-{
-    float k = (1.0f - front.w) * next.w;
-    return hdrp_v4_make(front.x + next.x * k, front.y + next.y * k, front.z + next.z * k,
-                        front.w + k);
-}
-
-static hdrp_v4 pixel_value(const sub_frame* s, worker* w, int x, int y)
-{
-    const rd_hit* hit = pixel_hit(s, x, y);
-    rd_ray ray = pixel_ray(s, x, y);
-    hdrp_v4 sum = hdrp_v4_make(0.0f, 0.0f, 0.0f, 0.0f);
-    ray.t_max = hit->t;
-    rd_trace_layers(s->r->trace, &ray, &w->layers);
-    w->layer_hit_count += w->layers.count;
-    if (s->r->options->view == RD_VIEW_LAYERS) {
-        float n = (float)w->layers.count / 16.0f;
-        return hdrp_v4_make(n, n, n, hit->mesh != RD_NO_HIT || w->layers.count ? 1.0f : 0.0f);
-    }
-    for (uint32_t i = 0; i < w->layers.count; ++i) {
-        sum = under(sum, evaluate(s, x, y, &ray, &w->layers.hits[i]));
-    }
-    if (hit->mesh != RD_NO_HIT) {
-        hdrp_v4 opaque = evaluate(s, x, y, &ray, hit);
-        opaque.w = 1.0f;
-        sum = under(sum, opaque);
-    }
-    return sum;
-}
-
-static void view_row(const sub_frame* s, worker* w, int y)
-{
-    float* film = s->r->film + (size_t)y * (size_t)s->r->width * 4;
-    for (int x = 0; x < s->r->width; ++x, film += 4) {
-        hdrp_v4 v = pixel_value(s, w, x, y);
-        film[0] += v.x;
-        film[1] += v.y;
-        film[2] += v.z;
-        film[3] += v.w;
-    }
-}
-
-static void run_pass(const sub_frame* s, const char* name, row_pass pass, double* done,
-                     double total)
+/* Without memory for a worker its rows stay as they were; the caller's checks come first. */
+static void run_pass(const rd_sub_frame* s, const char* name, rd_row_pass pass, schedule* t)
 {
     rd_renderer* r = s->r;
     double begin = rd_now_ms();
     int jobs = (r->height + ROWS_PER_JOB - 1) / ROWS_PER_JOB;
-    uint64_t rays = 0, layer_hits = 0, dropped = 0;
-#pragma omp parallel reduction(+ : rays, layer_hits, dropped)
+#pragma omp parallel
     {
-        worker w;
-        memset(&w, 0, sizeof w);
+        rd_worker* w = (rd_worker*)calloc(1, sizeof *w);
 #pragma omp for schedule(dynamic, 1)
         for (int j = 0; j < jobs; ++j) {
             int end = (j + 1) * ROWS_PER_JOB < r->height ? (j + 1) * ROWS_PER_JOB : r->height;
-            for (int y = j * ROWS_PER_JOB; y < end; ++y) {
-                pass(s, &w, y);
+            for (int y = j * ROWS_PER_JOB; w && y < end; ++y) {
+                pass(s, w, y);
             }
 #pragma omp atomic
-            *done += 1.0;
-            rd_progress_show(r->progress, name, *done, total);
+            t->done += 1.0;
+            rd_progress_show(r->progress, name, t->done, t->total);
         }
-        rays += w.ray_count;
-        layer_hits += w.layer_hit_count;
-        dropped += w.layers.dropped;
-        free(w.layers.hits);
+        if (w) {
+#pragma omp critical(rd_counts)
+            add_counts(&r->counts, w);
+            rd_layer_list_free(w->list);
+            free(w->layers.hits);
+            free(w);
+        }
     }
-    r->ray_count += rays;
-    r->layer_hit_count += layer_hits;
-    r->layers_dropped += dropped;
-    rd_stats_pass(r->stats, name, rd_now_ms() - begin);
+    if (r->stats) {
+        rd_stats_pass(r->stats, name, rd_now_ms() - begin);
+    }
+}
+
+static void clear_visibility(rd_renderer* r)
+{
+    size_t pixels = (size_t)r->width * (size_t)r->height;
+    for (size_t i = 0; i < pixels; ++i) {
+        r->visibility[1][i] = 1.0f;
+    }
+}
+
+static void occlusion(const rd_sub_frame* s, schedule* t)
+{
+    const rd_options* o = s->r->options;
+    if (o->quality == RD_QUALITY_FAST || !(o->features & RD_FEATURE_AO)) {
+        clear_visibility(s->r);
+        return;
+    }
+    run_pass(s, "ambient occlusion", rd_occlusion_row, t);
+    run_pass(s, "blur of occlusion", rd_occlusion_blur_row, t);
+}
+
+static void transparent(const rd_sub_frame* s, schedule* t)
+{
+    rd_renderer* r = s->r;
+    double begin = rd_now_ms();
+    if (!rd_trace_has_layers(r->trace)) {
+        run_pass(s, "resolve", rd_resolve_row, t);
+        return;
+    }
+    rd_pyramid_build(&r->pyramid);
+    if (r->stats) {
+        rd_stats_pass(r->stats, "pyramid", rd_now_ms() - begin);
+    }
+    run_pass(s, "transparent surfaces", rd_layers_row, t);
+}
+
+/* The order of the talk: prepass and GBuffer, what lighting needs of it, deferred lighting, forward
+ * opaque, then everything transparent. */
+static void real_time(const rd_sub_frame* s, schedule* t)
+{
+    rd_view_stage stage = rd_view_stage_of(s->r->options->view);
+    run_pass(s, "visible surfaces", visibility_row, t);
+    if (stage == RD_STAGE_MATERIAL) {
+        run_pass(s, "view", rd_material_view_row, t);
+        return;
+    }
+    run_pass(s, "GBuffer", rd_gbuffer_row, t);
+    occlusion(s, t);
+    if (stage == RD_STAGE_GBUFFER) {
+        run_pass(s, "view", rd_frame_view_row, t);
+        return;
+    }
+    run_pass(s, "deferred lighting", rd_deferred_row, t);
+    run_pass(s, "forward opaque and sky", rd_forward_row, t);
+    transparent(s, t);
+}
+
+static int passes(const rd_renderer* r)
+{
+    bool occlusion_on =
+        r->options->quality != RD_QUALITY_FAST && r->options->features & RD_FEATURE_AO;
+    switch (rd_view_stage_of(r->options->view)) {
+    case RD_STAGE_MATERIAL:
+        return 2;
+    case RD_STAGE_GBUFFER:
+        return 3 + 2 * occlusion_on;
+    default:
+        return r->options->quality == RD_QUALITY_REFERENCE ? 1 : 5 + 2 * occlusion_on;
+    }
+}
+
+static bool is_path_traced(const rd_renderer* r)
+{
+    return r->options->quality == RD_QUALITY_REFERENCE &&
+           rd_view_stage_of(r->options->view) == RD_STAGE_LIGHTING;
 }
 
 static void scale_film(rd_renderer* r)
@@ -196,16 +216,20 @@ static void scale_film(rd_renderer* r)
 
 void rd_render(rd_renderer* r, const rd_camera* camera)
 {
-    double done = 0.0;
-    double total = 2.0 * r->spp * ((r->height + ROWS_PER_JOB - 1) / ROWS_PER_JOB);
-    sub_frame s;
+    int jobs = (r->height + ROWS_PER_JOB - 1) / ROWS_PER_JOB;
+    schedule t = {0.0, (double)passes(r) * r->spp * jobs};
+    rd_sub_frame s;
     r->camera = *camera;
     s.r = r;
     memset(r->film, 0, (size_t)r->width * (size_t)r->height * 4 * sizeof *r->film);
     for (int i = 0; i < r->spp; ++i) {
-        s.jitter = rd_camera_jitter((uint32_t)i, r->options->seed);
-        run_pass(&s, "visible surfaces", visibility_row, &done, total);
-        run_pass(&s, "view", view_row, &done, total);
+        s.index = (uint32_t)i;
+        s.jitter = rd_camera_jitter(s.index, r->options->seed);
+        if (is_path_traced(r)) {
+            run_pass(&s, "path tracing", rd_reference_row, &t);
+        } else {
+            real_time(&s, &t);
+        }
     }
     scale_film(r);
     rd_progress_end(r->progress);

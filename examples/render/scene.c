@@ -46,12 +46,27 @@ void rd_material_update_features(rd_material* m)
     f |= m->anisotropy != 0.0f ? HDRP_BRDF_FEATURE_ANISOTROPY : 0u;
     f |= m->film > 0.0f ? HDRP_BRDF_FEATURE_IRIDESCENCE : 0u;
     f |= m->transmission > 0.0f ? HDRP_BRDF_FEATURE_REFRACTION : 0u;
+    f |= m->slab_thickness > 0.0f ? HDRP_BRDF_FEATURE_SUBSURFACE | HDRP_BRDF_FEATURE_TRANSMISSION
+                                  : 0u;
     m->features = f;
 }
 
 bool rd_material_is_layer(const rd_material* m)
 {
     return m->alpha_mode == RD_ALPHA_BLEND || m->transmission > 0.0f;
+}
+
+bool rd_material_scatters(const rd_material* m)
+{
+    const float smooth = 0.1f;
+    return m->transmission > 0.0f && !(m->thickness > 0.0f) &&
+           hdrp_brdf_refraction_perceptual_roughness(m->perceptual_roughness, m->ior) > smooth;
+}
+
+hdrp_v3 rd_slab_transmittance(const rd_scene* scene, hdrp_u32 profile, float thickness)
+{
+    return hdrp_brdf_volume_transmittance(scene->slab_color[profile % RD_MAX_PROFILES], 1.0f,
+                                          thickness);
 }
 
 /* calloc(0) may return NULL, which would read as a failure. */
@@ -133,6 +148,14 @@ void rd_mesh_transform(rd_mesh* mesh, rd_affine a)
     }
     if (sign < 0.0f) {
         turn_around(mesh);
+    }
+}
+
+void rd_scene_drop_tangents(rd_scene* scene)
+{
+    for (int i = 0; i < scene->mesh_count; ++i) {
+        free(scene->meshes[i].tangents);
+        scene->meshes[i].tangents = NULL;
     }
 }
 

@@ -61,6 +61,7 @@ typedef struct rd_material {
     rd_alpha_mode alpha_mode;
     float alpha, alpha_cutoff;
     bool double_sided, unlit;
+    bool is_lamp; /* what it emits is also a light of the scene: reflections show that instead */
     hdrp_v3 base_color;
     float metallic, perceptual_roughness;
     float normal_scale, occlusion_strength;
@@ -75,7 +76,10 @@ typedef struct rd_material {
     float thickness; /* of what is below the surface, in units of the file; 0: a thin wall */
     float attenuation_distance_m; /* may be infinite */
     hdrp_v3 attenuation_color;
-    hdrp_u32 features; /* HDRP_BRDF_FEATURE_... */
+    float
+        slab_thickness; /* of a leaf or cloth that light crosses, of its profile's; 0: none does */
+    hdrp_u32 diffusion_profile; /* below RD_MAX_PROFILES */
+    hdrp_u32 features;          /* HDRP_BRDF_FEATURE_... */
     rd_texture_slot slot[RD_SLOT_COUNT];
     rd_detail detail;
 } rd_material;
@@ -127,6 +131,9 @@ typedef struct rd_bounds {
     hdrp_v3 low, high;
 } rd_bounds;
 
+/* As many as a GBuffer can name. */
+#define RD_MAX_PROFILES 16
+
 typedef struct rd_scene {
     rd_material* materials;
     rd_mesh* meshes;
@@ -135,7 +142,11 @@ typedef struct rd_scene {
     int material_count, mesh_count, light_count, camera_count;
     rd_texture_set textures;
     uint64_t triangle_count, vertex_count;
-    rd_bounds bounds; /* low > high where there is no geometry */
+    hdrp_v3 slab_color[RD_MAX_PROFILES]; /* of white light behind a slab of thickness 1 */
+    rd_bounds bounds;                    /* low > high where there is no geometry */
+    bool has_sky; /* wants the procedural sky, although it has lights of its own */
+    float sun_elevation_rad, sun_azimuth_rad;
+    hdrp_v3 ground_albedo; /* below the horizon of that sky */
 } rd_scene;
 
 /* Loads a glTF file: container, validation, materials, geometry. The textures are left encoded,
@@ -156,12 +167,21 @@ rd_texture_slot rd_texture_slot_make(int texture);
 /* Is seen through: cannot enter a GBuffer, is composited in order of depth. */
 bool rd_material_is_layer(const rd_material* m);
 
+/* Transmits light through a sheet that is so rough that it scatters. */
+bool rd_material_scatters(const rd_material* m);
+
+/* Share of light that crosses a slab of a diffusion profile. */
+hdrp_v3 rd_slab_transmittance(const rd_scene* scene, hdrp_u32 profile, float thickness);
+
 /* Room for the arrays of a mesh; `uv_sets` is a mask. Tangents need normals. */
 bool rd_mesh_allocate(rd_mesh* mesh, uint32_t vertices, uint32_t triangles, bool normals,
                       bool tangents, bool colors, uint32_t uv_sets);
 /* Moves a mesh to world space; a mirroring transform turns the triangles around. */
 void rd_mesh_transform(rd_mesh* mesh, rd_affine world_from_object);
 void rd_mesh_free(rd_mesh* mesh);
+
+/* From then on tangents come from the uv. */
+void rd_scene_drop_tangents(rd_scene* scene);
 
 /* Appends and counts; takes over the arrays of *mesh, which is freed on failure. */
 bool rd_scene_add_mesh(rd_scene* scene, rd_mesh* mesh);

@@ -160,7 +160,7 @@ static hdrp_v3 sky_lux(const rd_sky* sky)
     return sum;
 }
 
-rd_sky rd_sky_make(float elevation_rad, float azimuth_rad, float haze)
+rd_sky rd_sky_make(float elevation_rad, float azimuth_rad, float haze, hdrp_v3 ground_albedo)
 {
     rd_sky s;
     hdrp_v3 ground = {0.0f, EARTH_RADIUS + 10.0f, 0.0f};
@@ -170,7 +170,7 @@ rd_sky rd_sky_make(float elevation_rad, float azimuth_rad, float haze)
         hdrp_v3_make(c * sinf(azimuth_rad), sinf(elevation_rad), c * cosf(azimuth_rad));
     s.sun_radius_rad = SUN_RADIUS_RAD;
     s.haze = haze;
-    s.ground_albedo = hdrp_v3_make(0.24f, 0.22f, 0.19f);
+    s.ground_albedo = ground_albedo;
     s.sun_lux =
         hdrp_v3_mul(sun_above_lux, transmittance(&s, depth_to_top(ground, s.sun_direction)));
     lux = hdrp_v3_mad(sky_lux(&s), s.sun_lux, hdrp_max(s.sun_direction.y, 0.0f));

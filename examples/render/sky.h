@@ -15,7 +15,7 @@ typedef struct rd_sky {
 } rd_sky;
 
 /* The sun at an elevation above the horizon, and an azimuth from +Z towards +X. */
-rd_sky rd_sky_make(float elevation_rad, float azimuth_rad, float haze);
+rd_sky rd_sky_make(float elevation_rad, float azimuth_rad, float haze, hdrp_v3 ground_albedo);
 
 /* Luminance seen along a unit direction, without the disc of the sun. */
 hdrp_v3 rd_sky_nits(const rd_sky* sky, hdrp_v3 direction);

@@ -13,6 +13,7 @@ typedef struct patch {
     uint32_t corner[3];
     float weight[3];
     hdrp_v3 edge1, edge2;
+    bool has_footprint;
     hdrp_v2 weight_dx, weight_dy; /* of corners 1 and 2, from one pixel to the next */
 } patch;
 
@@ -172,18 +173,71 @@ static hdrp_basis tangent_frame(const patch* p, const rd_texture_slot* s, const 
         hdrp_v2_make(d1.x, -d1.y), hdrp_v2_make(d2.x, -d2.y));
 }
 
-/* The gradient of a normal map, and how long its filtered vector was. */
+/* Codes of 8 bits make unit vectors shorter by up to this, which is no roughness. */
+#define LENGTH_TOLERANCE 0.0075f
+
+/* The tangent-space normal some pixels away, as far as averaging left it. */
+static hdrp_v3 sample_normal(const patch* p, const rd_texture_slot* s, float pixels_x,
+                             float pixels_y)
+{
+    uv_point at = uv_of_set(p, s->uv_set);
+    hdrp_v2 dx = map_uv(s, at.dx, 0.0f), dy = map_uv(s, at.dy, 0.0f);
+    hdrp_v2 uv = map_uv(s, at.uv, 1.0f);
+    hdrp_v4 texel;
+    uv = hdrp_v2_add(uv, hdrp_v2_add(hdrp_v2_scale(dx, pixels_x), hdrp_v2_scale(dy, pixels_y)));
+    texel = rd_texture_sample(&p->scene->textures.items[s->texture], uv, dx, dy);
+    return hdrp_normal_from_rgb(hdrp_v3_from_v4(texel));
+}
+
+/* Averaging shortens normals by their variance. Interpolation between texels does so too, and is no
+ * sign of roughness: it counts as far as the footprint is larger than a texel. */
+static float variance_below_footprint(const patch* p, const rd_texture_slot* s, hdrp_v3 normal)
+{
+    uv_point at = uv_of_set(p, s->uv_set);
+    float texels = rd_texture_footprint(&p->scene->textures.items[s->texture],
+                                        map_uv(s, at.dx, 0.0f), map_uv(s, at.dy, 0.0f));
+    float length = hdrp_min(hdrp_v3_length(normal) + LENGTH_TOLERANCE, 1.0f);
+    return hdrp_saturate(texels - 1.0f) * hdrp_brdf_variance_from_average_normal(length);
+}
+
+/* From one footprint to the next, as the derivatives of graphics hardware show it. */
+static float variance_across_footprints(const patch* p, const rd_texture_slot* s, hdrp_v3 normal)
+{
+    hdrp_v3 up = hdrp_v3_make(0.0f, 0.0f, 1.0f);
+    hdrp_v3 n = hdrp_normalize_or(normal, up);
+    hdrp_v3 nx = hdrp_normalize_or(sample_normal(p, s, 1.0f, 0.0f), up);
+    hdrp_v3 ny = hdrp_normalize_or(sample_normal(p, s, 0.0f, 1.0f), up);
+    return hdrp_brdf_variance_from_derivatives(hdrp_v3_sub(nx, n), hdrp_v3_sub(ny, n),
+                                               RD_VARIANCE_STRENGTH, RD_VARIANCE_LIMIT);
+}
+
+/* What is rougher than this hides the small changes that the second kind finds. */
+#define ROUGH 0.45f
+
+static float map_variance(const patch* p, const rd_texture_slot* s, hdrp_v3 normal,
+                          float perceptual_roughness)
+{
+    float sum = 0.0f;
+    if (p->has_footprint) {
+        sum = variance_below_footprint(p, s, normal);
+        sum += perceptual_roughness < ROUGH ? variance_across_footprints(p, s, normal) : 0.0f;
+    }
+    return hdrp_min(sum, 1.0f);
+}
+
+/* The gradient of a normal map, and the variance that filtering took out of it. */
 static hdrp_v3 map_gradient(const patch* p, rd_slot slot, float scale, const rd_surface* at,
-                            float* length)
+                            float perceptual_roughness, float* variance)
 {
     const rd_texture_slot* s = &p->material->slot[slot];
     hdrp_v3 normal;
     hdrp_basis f;
+    *variance = 0.0f;
     if (s->texture < 0) {
         return hdrp_v3_splat(0.0f);
     }
-    normal = hdrp_normal_from_rgb(hdrp_v3_from_v4(sample(p, slot, white())));
-    *length = hdrp_v3_length(normal);
+    normal = sample_normal(p, s, 0.0f, 0.0f);
+    *variance = map_variance(p, s, normal, perceptual_roughness);
     f = tangent_frame(p, s, at);
     /* Materials are sheets: a bump seen from behind is a dent. */
     return hdrp_surface_gradient_from_derivative(
@@ -274,6 +328,7 @@ static void set_geometry(patch* p, const rd_ray* ray, const rd_ray_spread* sprea
     out->back_face = hdrp_v3_dot(n, out->view) < 0.0f;
     out->geometric_normal = out->back_face ? hdrp_v3_neg(n) : n;
     out->position_dx = out->position_dy = zero;
+    p->has_footprint = spread != NULL;
     if (spread) {
         out->position_dx = moved(ray, hit->t, n, spread->origin_dx, spread->direction_dx);
         out->position_dy = moved(ray, hit->t, n, spread->origin_dy, spread->direction_dy);
@@ -296,8 +351,8 @@ static void set_vertex_normal(const patch* p, rd_surface* out)
 
 static void set_normal(const patch* p, rd_surface* out)
 {
-    hdrp_v3 sum =
-        map_gradient(p, RD_SLOT_NORMAL, p->material->normal_scale, out, &out->normal_map_length);
+    hdrp_v3 sum = map_gradient(p, RD_SLOT_NORMAL, p->material->normal_scale, out,
+                               out->brdf.perceptual_roughness, &out->map_variance);
     if (p->material->detail.layer_count > 0) {
         sum = hdrp_v3_add(sum, detail_gradient(p, out));
     }
@@ -327,17 +382,16 @@ static void set_specular(const patch* p, rd_surface* out)
     float weight = m->specular * sample(p, RD_SLOT_SPECULAR, white()).w;
     hdrp_v3 tint =
         hdrp_v3_mul(m->specular_color, hdrp_v3_from_v4(sample(p, RD_SLOT_SPECULAR_COLOR, white())));
-    float r = (m->ior - 1.0f) / (m->ior + 1.0f);
-    float f0 = m->ior > 0.0f ? r * r : 1.0f;
-    out->brdf.dielectric_fresnel0 =
-        hdrp_v3_scale(hdrp_v3_saturate(hdrp_v3_scale(tint, f0)), weight);
+    /* An IOR of 0 stands for one without end, which reflects everything. */
+    out->brdf.dielectric_fresnel0 = m->ior > 0.0f
+                                        ? hdrp_brdf_dielectric_fresnel0(m->ior, tint, weight)
+                                        : hdrp_v3_scale(hdrp_v3_saturate(tint), weight);
     out->brdf.ior = m->ior > 0.0f ? m->ior : 3.0f;
 }
 
 static void set_coat(const patch* p, rd_surface* out)
 {
     const rd_material* m = p->material;
-    float unused = 1.0f;
     out->brdf.coat_normal = out->vertex_normal;
     if (!(m->features & HDRP_BRDF_FEATURE_CLEAR_COAT)) {
         return;
@@ -347,7 +401,21 @@ static void set_coat(const patch* p, rd_surface* out)
         m->coat_perceptual_roughness * sample(p, RD_SLOT_COAT_ROUGHNESS, white()).y;
     out->brdf.coat_normal = hdrp_normal_from_surface_gradient(
         out->vertex_normal,
-        map_gradient(p, RD_SLOT_COAT_NORMAL, m->coat_normal_scale, out, &unused));
+        map_gradient(p, RD_SLOT_COAT_NORMAL, m->coat_normal_scale, out,
+                     out->brdf.coat_perceptual_roughness, &out->coat_map_variance));
+}
+
+/* glTF widens the lobe along its direction from the width across it, which is that of the material;
+ * the surface wants the mean and the ratio. */
+static void set_widths(rd_surface* out, float strength)
+{
+    hdrp_brdf_alphas a;
+    hdrp_brdf_kulla k;
+    a.b = hdrp_brdf_alpha_from_perceptual_roughness(out->brdf.perceptual_roughness);
+    a.t = hdrp_lerp(a.b, 1.0f, hdrp_sq(hdrp_saturate(strength)));
+    k = hdrp_brdf_kulla_from_alphas(a);
+    out->brdf.perceptual_roughness = k.perceptual_roughness;
+    out->brdf.anisotropy = k.anisotropy;
 }
 
 /* KHR_materials_anisotropy: the texture's direction, turned counter-clockwise by the rotation, in
@@ -366,7 +434,9 @@ static void set_anisotropy(const patch* p, rd_surface* out)
     f = tangent_frame(p, s, out);
     out->brdf.tangent =
         hdrp_v3_mad(hdrp_v3_scale(f.tangent, c * x - k * y), f.bitangent, k * x + c * y);
-    out->brdf.anisotropy = m->anisotropy * texel.z;
+    if (m->features & HDRP_BRDF_FEATURE_ANISOTROPY) {
+        set_widths(out, m->anisotropy * texel.z);
+    }
 }
 
 static void set_film(const patch* p, rd_surface* out)
@@ -393,6 +463,19 @@ static void set_transmission(const patch* p, rd_surface* out)
         m->thickness * p->mesh->scale * sample(p, RD_SLOT_THICKNESS, white()).y;
 }
 
+static void set_slab(const patch* p, rd_surface* out)
+{
+    const rd_material* m = p->material;
+    if (!(m->features & HDRP_BRDF_FEATURE_TRANSMISSION)) {
+        return;
+    }
+    out->brdf.subsurface_mask = 1.0f;
+    out->brdf.diffusion_profile = m->diffusion_profile;
+    out->brdf.thickness = m->slab_thickness;
+    out->brdf.transmittance =
+        rd_slab_transmittance(p->scene, m->diffusion_profile, m->slab_thickness);
+}
+
 void rd_surface_evaluate(const rd_scene* scene, const rd_ray* ray, const rd_ray_spread* spread,
                          const rd_hit* hit, rd_surface* out)
 {
@@ -400,15 +483,16 @@ void rd_surface_evaluate(const rd_scene* scene, const rd_ray* ray, const rd_ray_
     out->material = p.material;
     out->brdf = hdrp_brdf_surface_default();
     out->brdf.features = p.material->features;
-    out->normal_map_length = 1.0f;
+    out->map_variance = out->coat_map_variance = 0.0f;
     set_geometry(&p, ray, spread, hit, out);
     set_vertex_normal(&p, out);
     out->uv = uv_of_set(&p, 0).uv;
-    set_normal(&p, out);
     set_base(&p, out);
+    set_normal(&p, out);
     set_specular(&p, out);
     set_coat(&p, out);
     set_anisotropy(&p, out);
     set_film(&p, out);
     set_transmission(&p, out);
+    set_slab(&p, out);
 }

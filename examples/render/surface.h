@@ -6,6 +6,11 @@
 #include "scene.h"
 #include "trace.h"
 
+/* Of hdrp_brdf_variance_from_derivatives: the pixel filter is a pixel wide; the limit keeps
+ * silhouettes from turning dull. */
+#define RD_VARIANCE_STRENGTH 0.16f
+#define RD_VARIANCE_LIMIT    0.1f
+
 typedef struct rd_surface {
     const rd_material* material;
     hdrp_brdf_surface brdf;
@@ -20,7 +25,8 @@ typedef struct rd_surface {
     hdrp_v3 emission_nits;
     float alpha;
     bool back_face;
-    float normal_map_length; /* of the filtered normal map vector: 1 is flat, less is rough */
+    float map_variance;      /* of the normals that the normal map has within the footprint */
+    float coat_map_variance; /* the same of the coat's */
 } rd_surface;
 
 /* Spread NULL: no footprint, textures are sampled at their finest level. */

@@ -289,12 +289,20 @@ hdrp_v4 rd_texture_sample_finest(const rd_texture* t, hdrp_v2 uv)
     return sample_level(t, 0, uv);
 }
 
+static float texels_along(const rd_texture* t, hdrp_v2 d)
+{
+    return sqrtf(hdrp_sq(d.x * (float)t->width) + hdrp_sq(d.y * (float)t->height));
+}
+
+float rd_texture_footprint(const rd_texture* t, hdrp_v2 d_dx, hdrp_v2 d_dy)
+{
+    return hdrp_max(texels_along(t, d_dx), texels_along(t, d_dy));
+}
+
 /* Heckbert's ellipse reduced to its two derivative vectors, as graphics hardware does. */
 hdrp_v4 rd_texture_sample(const rd_texture* t, hdrp_v2 uv, hdrp_v2 d_dx, hdrp_v2 d_dy)
 {
-    float w = (float)t->width, h = (float)t->height;
-    float lx = sqrtf(hdrp_sq(d_dx.x * w) + hdrp_sq(d_dx.y * h));
-    float ly = sqrtf(hdrp_sq(d_dy.x * w) + hdrp_sq(d_dy.y * h));
+    float lx = texels_along(t, d_dx), ly = texels_along(t, d_dy);
     hdrp_v2 axis = lx > ly ? d_dx : d_dy;
     float longer = lx > ly ? lx : ly;
     float shorter = lx > ly ? ly : lx;

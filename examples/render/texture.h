@@ -43,6 +43,9 @@ void rd_textures_free(rd_texture_set* set);
  * with the given derivatives: trilinear, with up to 4 probes along the longer axis. */
 hdrp_v4 rd_texture_sample(const rd_texture* t, hdrp_v2 uv, hdrp_v2 d_dx, hdrp_v2 d_dy);
 
+/* Texels of the finest level that such a footprint is long. */
+float rd_texture_footprint(const rd_texture* t, hdrp_v2 d_dx, hdrp_v2 d_dy);
+
 /* Bilinear at the finest level: for alpha tests, where averages would change the coverage. */
 hdrp_v4 rd_texture_sample_finest(const rd_texture* t, hdrp_v2 uv);
 

@@ -28,7 +28,9 @@ struct rd_trace {
 typedef struct query {
     struct RTCIntersectContext base; /* first: filters see a pointer to it */
     rd_layers* gather;
-    hdrp_v3* transmittance;     /* by ray.id */
+    hdrp_v3* transmittance; /* by ray.id */
+    const rd_ray* rays;     /* likewise */
+    rd_passing passing;
     uint32_t last_mesh[PACKET]; /* of the hit that was multiplied last */
     float last_t[PACKET];
 } query;
@@ -125,13 +127,53 @@ static void gather(rd_layers* layers, const rd_hit* hit)
     layers->hits[layers->count++] = *hit;
 }
 
-/* Light that goes straight on through a transparent surface: what it does not cover, and what a
- * transmissive one lets through, tinted. */
-static hdrp_v3 pass_through(const rd_material* m, hdrp_v4 c)
+static hdrp_v3 triangle_normal(const mesh_ref* r, uint32_t triangle)
 {
+    const uint32_t* i = r->mesh->indices + (size_t)triangle * 3;
+    hdrp_v3 a = r->mesh->positions[i[0]];
+    return hdrp_v3_cross(hdrp_v3_sub(r->mesh->positions[i[1]], a),
+                         hdrp_v3_sub(r->mesh->positions[i[2]], a));
+}
+
+/* What a transmissive surface does to light that goes straight on. A volume tints and absorbs it
+ * once, where it enters; each surface reflects some. */
+static hdrp_v3 transmitted(const mesh_ref* r, uint32_t triangle, hdrp_v3 direction, hdrp_v3 color)
+{
+    const rd_material* m = r->material;
+    hdrp_v3 n = hdrp_normalize_or(triangle_normal(r, triangle), direction);
+    float cosine = hdrp_v3_dot(n, direction);
+    float ior = m->ior > 0.0f ? m->ior : 3.0f;
+    float f0 = m->specular * hdrp_brdf_fresnel0_from_ior(ior, 1.0f);
+    float share = 1.0f - hdrp_brdf_f_schlick(f0, 1.0f, hdrp_abs(cosine));
+    hdrp_v3 left = color;
+    if (m->thickness > 0.0f) {
+        left = hdrp_v3_mul(color, hdrp_brdf_volume_transmittance(m->attenuation_color,
+                                                                 m->attenuation_distance_m,
+                                                                 m->thickness * r->mesh->scale));
+        left = cosine > 0.0f ? hdrp_v3_splat(1.0f) : left;
+    }
+    return hdrp_v3_scale(left, share * m->transmission * (1.0f - m->metallic));
+}
+
+static bool passes(const rd_material* m, rd_passing passing)
+{
+    bool volume = m->thickness > 0.0f;
+    return volume ? passing != RD_PASSING_THIN
+                  : passing == RD_PASSING_ALL || !rd_material_scatters(m);
+}
+
+/* Light that goes straight on through a transparent surface: what it does not cover, and what a
+ * transmissive one lets through. */
+static hdrp_v3 pass_through(const mesh_ref* r, const query* q, uint32_t triangle, hdrp_v4 c,
+                            hdrp_v3 direction)
+{
+    const rd_material* m = r->material;
     float alpha = m->alpha_mode == RD_ALPHA_BLEND ? hdrp_saturate(c.w) : 1.0f;
-    hdrp_v3 tint = hdrp_v3_scale(hdrp_v3_from_v4(c), alpha * m->transmission);
-    return hdrp_v3_add(hdrp_v3_splat(1.0f - alpha), tint);
+    hdrp_v3 open = hdrp_v3_splat(1.0f - alpha);
+    if (!(m->transmission > 0.0f) || !passes(m, q->passing)) {
+        return open;
+    }
+    return hdrp_v3_mad(open, transmitted(r, triangle, direction, hdrp_v3_from_v4(c)), alpha);
 }
 
 /* A ray along an edge meets both triangles there: one surface, not two. */
@@ -144,7 +186,8 @@ static void multiply(query* q, const mesh_ref* r, const rd_hit* hit, hdrp_v4 c, 
 {
     hdrp_v3* t = &q->transmittance[ray_id];
     if (!is_same_surface(q->last_mesh[ray_id], q->last_t[ray_id], hit)) {
-        *t = hdrp_v3_mul(*t, pass_through(r->material, c));
+        hdrp_v3 direction = q->rays[ray_id].direction;
+        *t = hdrp_v3_mul(*t, pass_through(r, q, hit->triangle, c, direction));
     }
     q->last_mesh[ray_id] = hit->mesh;
     q->last_t[ray_id] = hit->t;
@@ -344,17 +387,11 @@ static void intersect_packet(RTCScene scene, const rd_ray* rays, rd_hit* hits, u
 static bool is_culled(const rd_trace* t, const rd_ray* ray, const rd_hit* hit)
 {
     const mesh_ref* r;
-    const uint32_t* i;
-    hdrp_v3 a, n;
     if (hit->mesh == RD_NO_HIT || t->refs[hit->mesh].material->double_sided) {
         return false;
     }
     r = &t->refs[hit->mesh];
-    i = r->mesh->indices + (size_t)hit->triangle * 3;
-    a = r->mesh->positions[i[0]];
-    n = hdrp_v3_cross(hdrp_v3_sub(r->mesh->positions[i[1]], a),
-                      hdrp_v3_sub(r->mesh->positions[i[2]], a));
-    return hdrp_v3_dot(n, ray->direction) > 0.0f;
+    return hdrp_v3_dot(triangle_normal(r, hit->triangle), ray->direction) > 0.0f;
 }
 
 /* The next surface behind a culled one. Steps by more than the rounding of t. */
@@ -405,8 +442,8 @@ void rd_trace_closest_any(const rd_trace* t, const rd_ray* rays, rd_hit* hits, u
     }
 }
 
-static void transmittance_packet(const rd_trace* t, const rd_ray* rays, hdrp_v3* out,
-                                 uint32_t count)
+static void transmittance_packet(const rd_trace* t, const rd_ray* rays, rd_passing passing,
+                                 hdrp_v3* out, uint32_t count)
 {
     query q = make_query(true);
     int valid[PACKET] __attribute__((aligned(32)));
@@ -420,15 +457,33 @@ static void transmittance_packet(const rd_trace* t, const rd_ray* rays, hdrp_v3*
     }
     if (t->layer_count) {
         q.transmittance = out;
+        q.rays = rays;
+        q.passing = passing;
         rtcOccluded8(valid, t->layers, &q.base, &p);
     }
 }
 
-void rd_trace_transmittance(const rd_trace* t, const rd_ray* rays, hdrp_v3* out, uint32_t count)
+void rd_trace_transmittance(const rd_trace* t, const rd_ray* rays, rd_passing passing, hdrp_v3* out,
+                            uint32_t count)
 {
     for (uint32_t at = 0; at < count; at += PACKET) {
         uint32_t n = count - at < PACKET ? count - at : PACKET;
-        transmittance_packet(t, rays + at, out + at, n);
+        transmittance_packet(t, rays + at, passing, out + at, n);
+    }
+}
+
+void rd_trace_hidden(const rd_trace* t, const rd_ray* rays, bool* hidden, uint32_t count)
+{
+    for (uint32_t at = 0; at < count; at += PACKET) {
+        query q = make_query(false);
+        int valid[PACKET] __attribute__((aligned(32)));
+        uint32_t n = count - at < PACKET ? count - at : PACKET;
+        struct RTCRay8 p;
+        load_rays(&p, valid, rays + at, n);
+        rtcOccluded8(valid, t->opaque, &q.base, &p);
+        for (uint32_t i = 0; i < n; ++i) {
+            hidden[at + i] = p.tfar[i] < 0.0f;
+        }
     }
 }
 

@@ -46,10 +46,21 @@ void rd_trace_closest(const rd_trace* trace, const rd_ray* rays, rd_hit* hits, u
 /* The same including transparent surfaces, and without culling: for paths of light. */
 void rd_trace_closest_any(const rd_trace* trace, const rd_ray* rays, rd_hit* hits, uint32_t count);
 
+/* Which transparent surfaces let light straight through. The others stop it: whoever asks finds
+ * that light by following it through them. */
+typedef enum rd_passing {
+    RD_PASSING_ALL,    /* real time */
+    RD_PASSING_SMOOTH, /* all but rough sheets */
+    RD_PASSING_THIN    /* smooth sheets; no volumes, which bend light */
+} rd_passing;
+
 /* Share of light that passes from end to end of each ray: 0 behind opaque surfaces, coloured by
  * the transparent ones between. */
-void rd_trace_transmittance(const rd_trace* trace, const rd_ray* rays, hdrp_v3* out,
-                            uint32_t count);
+void rd_trace_transmittance(const rd_trace* trace, const rd_ray* rays, rd_passing passing,
+                            hdrp_v3* out, uint32_t count);
+
+/* Does anything opaque lie between the ends of each ray? Rays need not be alike. */
+void rd_trace_hidden(const rd_trace* trace, const rd_ray* rays, bool* hidden, uint32_t count);
 
 /* All transparent surfaces between t_min and t_max of the ray, nearest first. */
 void rd_trace_layers(const rd_trace* trace, const rd_ray* ray, rd_layers* layers);

@@ -6,33 +6,48 @@
 static const struct {
     const char* name;
     rd_encoding encoding;
+    rd_view_stage stage;
 } views[RD_VIEW_COUNT] = {
-    [RD_VIEW_LIT] = {"lit", RD_ENCODE_LIT},
-    [RD_VIEW_BASE_COLOR] = {"base_color", RD_ENCODE_COLOR},
-    [RD_VIEW_NORMAL] = {"normal", RD_ENCODE_SIGNED},
-    [RD_VIEW_GEOMETRIC_NORMAL] = {"geometric_normal", RD_ENCODE_SIGNED},
-    [RD_VIEW_VERTEX_NORMAL] = {"vertex_normal", RD_ENCODE_SIGNED},
-    [RD_VIEW_TANGENT] = {"tangent", RD_ENCODE_SIGNED},
-    [RD_VIEW_UV] = {"uv", RD_ENCODE_DATA},
-    [RD_VIEW_ROUGHNESS] = {"roughness", RD_ENCODE_DATA},
-    [RD_VIEW_METALLIC] = {"metallic", RD_ENCODE_DATA},
-    [RD_VIEW_F0] = {"f0", RD_ENCODE_COLOR},
-    [RD_VIEW_DEPTH] = {"depth", RD_ENCODE_DISTANCE},
-    [RD_VIEW_FEATURES] = {"features", RD_ENCODE_DATA},
-    [RD_VIEW_MATERIAL] = {"material", RD_ENCODE_DATA},
-    [RD_VIEW_ALPHA] = {"alpha", RD_ENCODE_DATA},
-    [RD_VIEW_EMISSION] = {"emission", RD_ENCODE_COLOR},
-    [RD_VIEW_OCCLUSION] = {"occlusion", RD_ENCODE_DATA},
-    [RD_VIEW_COAT] = {"coat", RD_ENCODE_DATA},
-    [RD_VIEW_ANISOTROPY] = {"anisotropy", RD_ENCODE_DATA},
-    [RD_VIEW_FILM] = {"film", RD_ENCODE_DATA},
-    [RD_VIEW_TRANSMISSION] = {"transmission", RD_ENCODE_DATA},
-    [RD_VIEW_LAYERS] = {"layers", RD_ENCODE_DATA},
+    [RD_VIEW_LIT] = {"lit", RD_ENCODE_LIT, RD_STAGE_LIGHTING},
+    [RD_VIEW_BASE_COLOR] = {"base_color", RD_ENCODE_COLOR, RD_STAGE_MATERIAL},
+    [RD_VIEW_NORMAL] = {"normal", RD_ENCODE_SIGNED, RD_STAGE_MATERIAL},
+    [RD_VIEW_GEOMETRIC_NORMAL] = {"geometric_normal", RD_ENCODE_SIGNED, RD_STAGE_MATERIAL},
+    [RD_VIEW_VERTEX_NORMAL] = {"vertex_normal", RD_ENCODE_SIGNED, RD_STAGE_MATERIAL},
+    [RD_VIEW_TANGENT] = {"tangent", RD_ENCODE_SIGNED, RD_STAGE_MATERIAL},
+    [RD_VIEW_UV] = {"uv", RD_ENCODE_DATA, RD_STAGE_MATERIAL},
+    [RD_VIEW_ROUGHNESS] = {"roughness", RD_ENCODE_DATA, RD_STAGE_MATERIAL},
+    [RD_VIEW_METALLIC] = {"metallic", RD_ENCODE_DATA, RD_STAGE_MATERIAL},
+    [RD_VIEW_F0] = {"f0", RD_ENCODE_COLOR, RD_STAGE_MATERIAL},
+    [RD_VIEW_DEPTH] = {"depth", RD_ENCODE_DISTANCE, RD_STAGE_MATERIAL},
+    [RD_VIEW_FEATURES] = {"features", RD_ENCODE_DATA, RD_STAGE_MATERIAL},
+    [RD_VIEW_MATERIAL] = {"material", RD_ENCODE_DATA, RD_STAGE_MATERIAL},
+    [RD_VIEW_ALPHA] = {"alpha", RD_ENCODE_DATA, RD_STAGE_MATERIAL},
+    [RD_VIEW_EMISSION] = {"emission", RD_ENCODE_COLOR, RD_STAGE_MATERIAL},
+    [RD_VIEW_OCCLUSION] = {"occlusion", RD_ENCODE_DATA, RD_STAGE_MATERIAL},
+    [RD_VIEW_COAT] = {"coat", RD_ENCODE_DATA, RD_STAGE_MATERIAL},
+    [RD_VIEW_ANISOTROPY] = {"anisotropy", RD_ENCODE_DATA, RD_STAGE_MATERIAL},
+    [RD_VIEW_FILM] = {"film", RD_ENCODE_DATA, RD_STAGE_MATERIAL},
+    [RD_VIEW_TRANSMISSION] = {"transmission", RD_ENCODE_DATA, RD_STAGE_MATERIAL},
+    [RD_VIEW_LAYERS] = {"layers", RD_ENCODE_DATA, RD_STAGE_MATERIAL},
+    [RD_VIEW_DIFFUSE] = {"diffuse", RD_ENCODE_LIT, RD_STAGE_LIGHTING},
+    [RD_VIEW_SPECULAR] = {"specular", RD_ENCODE_LIT, RD_STAGE_LIGHTING},
+    [RD_VIEW_AO] = {"ao", RD_ENCODE_DATA, RD_STAGE_GBUFFER},
+    [RD_VIEW_PATH] = {"path", RD_ENCODE_DATA, RD_STAGE_GBUFFER},
+    [RD_VIEW_RT0] = {"rt0", RD_ENCODE_COLOR, RD_STAGE_GBUFFER},
+    [RD_VIEW_RT1] = {"rt1", RD_ENCODE_DATA, RD_STAGE_GBUFFER},
+    [RD_VIEW_RT2] = {"rt2", RD_ENCODE_DATA, RD_STAGE_GBUFFER},
+    [RD_VIEW_RT3] = {"rt3", RD_ENCODE_COLOR, RD_STAGE_GBUFFER},
+    [RD_VIEW_RT4] = {"rt4", RD_ENCODE_DATA, RD_STAGE_GBUFFER},
 };
 
 const char* rd_view_name(rd_view view)
 {
     return views[view].name;
+}
+
+rd_view_stage rd_view_stage_of(rd_view view)
+{
+    return views[view].stage;
 }
 
 rd_encoding rd_view_encoding(rd_view view)

@@ -26,6 +26,15 @@ typedef enum rd_view {
     RD_VIEW_FILM,
     RD_VIEW_TRANSMISSION,
     RD_VIEW_LAYERS,
+    RD_VIEW_DIFFUSE,
+    RD_VIEW_SPECULAR,
+    RD_VIEW_AO,
+    RD_VIEW_PATH,
+    RD_VIEW_RT0,
+    RD_VIEW_RT1,
+    RD_VIEW_RT2,
+    RD_VIEW_RT3,
+    RD_VIEW_RT4,
     RD_VIEW_COUNT
 } rd_view;
 
@@ -38,12 +47,20 @@ typedef enum rd_encoding {
     RD_ENCODE_DISTANCE /* metres, the nearest white and the farthest dark */
 } rd_encoding;
 
+/* Where in the pipeline a view is taken. */
+typedef enum rd_view_stage {
+    RD_STAGE_MATERIAL, /* from the surfaces, transparent ones included */
+    RD_STAGE_GBUFFER,  /* before lighting */
+    RD_STAGE_LIGHTING  /* all passes run */
+} rd_view_stage;
+
 const char* rd_view_name(rd_view view);
+rd_view_stage rd_view_stage_of(rd_view view);
 rd_encoding rd_view_encoding(rd_view view);
 /* RD_VIEW_COUNT where there is no such view. */
 rd_view rd_view_from_name(const char* name);
 
-/* The quantity at a surface. Not for RD_VIEW_LIT and RD_VIEW_LAYERS. */
+/* The quantity at a surface, for the views of RD_STAGE_MATERIAL but RD_VIEW_LAYERS. */
 hdrp_v3 rd_view_value(rd_view view, const rd_camera* camera, const rd_surface* s);
 
 #endif

@@ -32,7 +32,7 @@ WRONG = [
     (["--fov", "180"], "--fov"),
     (["--camera", "99"], "--camera"),
     (["--camera", "0", "--eye", "1,2,3"], "--eye"),
-    (["--env-lux", "1000"], "--env-lux"),
+    (["--env-lux", "0"], "--env-lux"),
     (["--frames", "0"], "--frames"),
     (["--out", "picture.jpg"], "--out"),
     (["--out", "no/such/folder/picture.png"], "no/such/folder"),

@@ -194,7 +194,7 @@ static void transparent_surfaces_multiply_and_opaque_ones_stop_light(void** stat
                             hdrp_v3_make(0.0f, 0.0f, 1.0f));
         rays[i].t_max = 10.0f;
     }
-    rd_trace_transmittance(f.trace, rays, out, 9);
+    rd_trace_transmittance(f.trace, rays, RD_PASSING_ALL, out, 9);
     for (int i = 0; i < 9; ++i) {
         assert_v3_near(out[i], hdrp_v3_splat(i < 5 ? 0.25f : 0.0f), 1e-6f);
     }
