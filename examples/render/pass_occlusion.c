@@ -1,6 +1,6 @@
 /* Ambient occlusion by short rays, in the place that screen-space ambient occlusion has: from the
  * normal buffer, before lighting. Each pixel of a tile of 4 by 4 sends one ray of a set of 16; a
- * blur over a window of that size then sees all of them everywhere, so that no noise is left. */
+ * blur over two tiles then weighs all of them alike everywhere, so that no noise is left. */
 #include "frame.h"
 
 #include <math.h>
@@ -95,6 +95,12 @@ static float weight(const rd_sub_frame* s, const plane* p, int x, int y)
     return off < p->tolerance && facing > 0.8f ? 1.0f : 0.0f;
 }
 
+/* Every ray of the set stands in the window once or twice; the weights of each add up to TILE. */
+static float tent(int distance)
+{
+    return (float)(TILE - (distance < 0 ? -distance : distance));
+}
+
 static float blurred(const rd_sub_frame* s, int x, int y)
 {
     size_t px = rd_pixel(s, x, y);
@@ -103,10 +109,10 @@ static float blurred(const rd_sub_frame* s, int x, int y)
     p.point = s->r->gbuffer.positions[px];
     p.normal = s->r->gbuffer.geometric_normals[px];
     p.tolerance = PLANE_TOLERANCE * s->r->hits[px].t;
-    for (int j = y - TILE / 2; j < y + TILE / 2; ++j) {
-        for (int i = x - TILE / 2; i < x + TILE / 2; ++i) {
+    for (int j = y - TILE + 1; j < y + TILE; ++j) {
+        for (int i = x - TILE + 1; i < x + TILE; ++i) {
             if (i >= 0 && j >= 0 && i < s->r->width && j < s->r->height) {
-                float k = weight(s, &p, i, j);
+                float k = weight(s, &p, i, j) * tent(i - x) * tent(j - y);
                 sum += k * s->r->visibility[0][rd_pixel(s, i, j)];
                 weights += k;
             }
