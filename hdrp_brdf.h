@@ -427,6 +427,20 @@ HDRP_FN hdrp_brdf_lit_view hdrp_i_brdf_lit_view_set_fresnel(hdrp_brdf_lit_view w
     return w;
 }
 
+/** No dependence on the azimuth, for materials without anisotropy. */
+HDRP_FN hdrp_brdf_fgd_stretch hdrp_i_brdf_lit_no_stretch(void)
+{
+    hdrp_brdf_fgd_stretch s;
+    s.widths2 = hdrp_v3_splat(0.0f);
+    s.loss_n1 = hdrp_v2_make(0.0f, 0.0f);
+    s.loss_d1 = s.widths2;
+    s.loss_n2 = s.loss_n1;
+    s.cosine0 = s.loss_n1;
+    s.cosine1 = s.loss_n1;
+    s.cosine2 = s.loss_n1;
+    return s;
+}
+
 /** w with the fit of the directional albedo of the base lobe. */
 HDRP_FN hdrp_brdf_lit_view hdrp_i_brdf_lit_view_set_fit(hdrp_brdf_lit_view w, hdrp_brdf_data d,
                                                         hdrp_u32 features)
@@ -437,7 +451,7 @@ HDRP_FN hdrp_brdf_lit_view hdrp_i_brdf_lit_view_set_fit(hdrp_brdf_lit_view w, hd
         return w;
     }
     w.fit = hdrp_brdf_fgd_fit_make(d.perceptual_roughness);
-    w.stretch = hdrp_i_brdf_fgd_stretch_none();
+    w.stretch = hdrp_i_brdf_lit_no_stretch();
     return w;
 }
 

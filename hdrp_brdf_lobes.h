@@ -21,8 +21,8 @@
  *       v_smith_ggx_fast d_ggx_aniso d_ggx_aniso_vectors v_smith_ggx_aniso
  *   sampling ggx: sample_vndf pdf_vndf
  *   anisotropy: alphas_kulla alphas_disney kulla_from_alphas env_lobe_aniso
- *   directional albedo: fgd_uv fgd_fit_make_aniso fgd_fit_make fgd_from_fit fgd_fast
- *       energy_compensation bounces_make multiscatter specular_albedo
+ *   directional albedo: fgd_uv fgd_fit_make fgd_fit_make_aniso fgd_stretch_make fgd_fit_towards
+ *       fgd_from_fit fgd_fast energy_compensation bounces_make multiscatter specular_albedo
  *   diffuse: diffuse_disney diffuse_disney_normalized diffuse_share diffuse_share_mean diffuse
  *   thin film: film film_exact film_airy film_fast fresnel0_from_schlick
  *   transmission: refract volume_transmittance refraction_perceptual_roughness btdf_ggx
@@ -728,7 +728,7 @@ HDRP_TYPEDEF(hdrp_brdf_fgd_stretch)
  *  returns  finite
  *  edges    equal widths give the fit of the isotropic lobe; widths whose mean is above 1 are
  *           narrowed together
- *  error    none: see hdrp_brdf_fgd_fit_towards, whose coefficients these are
+ *  error    <= 0.006 absolute, of mean_loss  @accuracy brdf_fgd_fit_aniso_mean
  *  source   our own minimax fit to a quadrature, by tools/fit_brdf.py
  *  note     the means over the hemisphere are those of the stretched lobe */
 HDRP_FN hdrp_brdf_fgd_fit hdrp_brdf_fgd_fit_make_aniso(hdrp_brdf_alphas alphas)
@@ -800,20 +800,6 @@ HDRP_FN hdrp_brdf_fgd_stretch hdrp_brdf_fgd_stretch_make(hdrp_brdf_alphas alphas
     return s;
 }
 
-/** No dependence on the azimuth, for materials without anisotropy. */
-HDRP_FN hdrp_brdf_fgd_stretch hdrp_i_brdf_fgd_stretch_none(void)
-{
-    hdrp_brdf_fgd_stretch s;
-    s.widths2 = hdrp_v3_splat(0.0f);
-    s.loss_n1 = hdrp_v2_make(0.0f, 0.0f);
-    s.loss_d1 = s.widths2;
-    s.loss_n2 = s.loss_n1;
-    s.cosine0 = s.loss_n1;
-    s.cosine1 = s.loss_n1;
-    s.cosine2 = s.loss_n1;
-    return s;
-}
-
 /** The fit of a stretched lobe in the plane of one direction, for hdrp_brdf_fgd_from_fit.
  *  fit      valid   made by hdrp_brdf_fgd_fit_make_aniso
  *  stretch  valid   made by hdrp_brdf_fgd_stretch_make of the same widths
@@ -822,11 +808,13 @@ HDRP_FN hdrp_brdf_fgd_stretch hdrp_i_brdf_fgd_stretch_none(void)
  *  n_dot_x  [-1,1]  along the normal
  *  returns  finite
  *  edges    fit, up to rounding, for equal widths; vectors shorter than 1 act as limited
- *  error    <= @A@ absolute, of albedo above the true one, unit vectors
- *           @accuracy brdf_fgd_fit_towards_albedo
- *  error    <= @B@ absolute, of albedo below the true one  @accuracy brdf_fgd_fit_towards_short
- *  error    <= @C@ absolute, of schlick, anisotropy within -0.75 to 0.75
+ *  error    <= 0.012 absolute, of albedo above the true one, n_dot_x of at least 3e-4
+ *           @accuracy brdf_fgd_fit_towards_above
+ *  error    <= 0.0055 absolute, of albedo below it, likewise  @accuracy brdf_fgd_fit_towards_below
+ *  error    <= 0.065 absolute, of schlick, anisotropy within -0.75 to 0.75, likewise
  *           @accuracy brdf_fgd_fit_towards_schlick
+ *  error    <= 0.0065 absolute, of schlick below the true one at any anisotropy, likewise
+ *           @accuracy brdf_fgd_fit_towards_schlick_below
  *  source   our own minimax fit to a quadrature, by tools/fit_brdf.py
  *  note     the loss is a rational function of the cosine over the width in the plane of the
  *           direction, with coefficients quadratic in the cosine of twice the azimuth in the space
