@@ -539,7 +539,10 @@ HDRP_FN hdrp_v3 hdrp_i_brdf_slab_share(hdrp_v3 diffuse_color, hdrp_v3 transmitta
  *  error     none: composed of the functions above
  *  source    Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
  *            Definition Render Pipeline", slides on the Lit shader
- *  note      light that crosses a thin slab is missing from its front, unlike in the source */
+ *  note      light that crosses a thin slab is missing from its front, unlike in the source. A white
+ *            surface reflects at most 1.005 of what it receives, and at least 0.99; where it is
+ *            anisotropic and not a metal at least 0.97 (anisotropy 0.5) and 0.93 (1), n_dot_v of at
+ *            least 0.05 */
 HDRP_FN hdrp_brdf_lit_view hdrp_brdf_lit_view_make(hdrp_brdf_data d, hdrp_v3 v, hdrp_brdf_fgd fgd,
                                                    hdrp_u32 features)
 {
