@@ -427,13 +427,13 @@ HDRP_FN hdrp_brdf_lit_view hdrp_i_brdf_lit_view_set_fresnel(hdrp_brdf_lit_view w
     return w;
 }
 
-/** No dependence on the azimuth, for materials without anisotropy. */
-HDRP_FN hdrp_brdf_fgd_stretch hdrp_i_brdf_lit_no_stretch(void)
+/** No dependence on the azimuth, for a lobe of equal widths. */
+HDRP_FN hdrp_brdf_fgd_stretch hdrp_i_brdf_lit_no_stretch(float alpha)
 {
     hdrp_brdf_fgd_stretch s;
-    s.widths2 = hdrp_v3_splat(0.0f);
+    s.widths2 = hdrp_v3_splat(alpha * alpha);
     s.loss_n1 = hdrp_v2_make(0.0f, 0.0f);
-    s.loss_d1 = s.widths2;
+    s.loss_d1 = hdrp_v3_splat(0.0f);
     s.loss_n2 = s.loss_n1;
     s.cosine0 = s.loss_n1;
     s.cosine1 = s.loss_n1;
@@ -451,7 +451,7 @@ HDRP_FN hdrp_brdf_lit_view hdrp_i_brdf_lit_view_set_fit(hdrp_brdf_lit_view w, hd
         return w;
     }
     w.fit = hdrp_brdf_fgd_fit_make(d.perceptual_roughness);
-    w.stretch = hdrp_i_brdf_lit_no_stretch();
+    w.stretch = hdrp_i_brdf_lit_no_stretch(w.alphas.t);
     return w;
 }
 
@@ -539,10 +539,10 @@ HDRP_FN hdrp_v3 hdrp_i_brdf_slab_share(hdrp_v3 diffuse_color, hdrp_v3 transmitta
  *  error     none: composed of the functions above
  *  source    Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
  *            Definition Render Pipeline", slides on the Lit shader
- *  note      light that crosses a thin slab is missing from its front, unlike in the source. A white
- *            surface reflects at most 1.005 of what it receives, and at least 0.99; where it is
- *            anisotropic and not a metal at least 0.97 (anisotropy 0.5) and 0.93 (1), n_dot_v of at
- *            least 0.05 */
+ *  note      light that crosses a thin slab is missing from its front, unlike in the source. A
+ *            white surface reflects at most 1.005 of what it receives, and at least 0.99; where it
+ *            is anisotropic and not a metal at least 0.97 (anisotropy 0.5) and 0.93 (1), for an
+ *            n_dot_v of at least 0.05 */
 HDRP_FN hdrp_brdf_lit_view hdrp_brdf_lit_view_make(hdrp_brdf_data d, hdrp_v3 v, hdrp_brdf_fgd fgd,
                                                    hdrp_u32 features)
 {
