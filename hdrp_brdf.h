@@ -316,20 +316,21 @@ HDRP_FN hdrp_v3 hdrp_brdf_dielectric_fresnel0(float ior, hdrp_v3 specular_color,
 
 /* What the lights of a pixel share. Made by hdrp_brdf_lit_view_make. */
 struct hdrp_brdf_lit_view {
-    hdrp_v3 v;                 /* unit */
-    float n_dot_v;             /* [HDRP_BRDF_N_DOT_V_MIN,1] */
-    hdrp_brdf_alphas alphas;   /* of the base lobe */
-    hdrp_v3 fresnel0;          /* [0,1] of the base, under its film and coat */
-    float fresnel90;           /* [0,1] */
-    hdrp_brdf_fgd_fit fit;     /* of the base lobe */
-    hdrp_brdf_bounces bounces; /* of the base lobe */
-    float multiscatter;        /* [0,inf) 1/sr, what all lights share of hdrp_brdf_multiscatter */
-    hdrp_v3 diffuse;           /* [0,inf) 1/sr, what all lights share of hdrp_brdf_diffuse */
-    hdrp_v3 specular_albedo;   /* [0,1] of the base lobe, all bounces */
-    hdrp_v3 diffuse_albedo;    /* [0,1] of the diffuse lobe on the side of v */
-    hdrp_v3 transmitted;       /* [0,1] colour of refracted light, before the Fresnel term */
-    float coat_n_dot_v;        /* [HDRP_BRDF_N_DOT_V_MIN,1] */
-    float below_coat;          /* [0,1] share of light from v that the coat lets through */
+    hdrp_v3 v;                     /* unit */
+    float n_dot_v;                 /* [HDRP_BRDF_N_DOT_V_MIN,1] */
+    hdrp_brdf_alphas alphas;       /* of the base lobe */
+    hdrp_v3 fresnel0;              /* [0,1] of the base, under its film and coat */
+    float fresnel90;               /* [0,1] */
+    hdrp_brdf_fgd_fit fit;         /* of the base lobe */
+    hdrp_brdf_fgd_stretch stretch; /* of the base lobe, where it is anisotropic */
+    hdrp_brdf_bounces bounces;     /* of the base lobe */
+    float multiscatter;      /* [0,inf) 1/sr, what all lights share of hdrp_brdf_multiscatter */
+    hdrp_v3 diffuse;         /* [0,inf) 1/sr, what all lights share of hdrp_brdf_diffuse */
+    hdrp_v3 specular_albedo; /* [0,1] of the base lobe, all bounces */
+    hdrp_v3 diffuse_albedo;  /* [0,1] of the diffuse lobe on the side of v */
+    hdrp_v3 transmitted;     /* [0,1] colour of refracted light, before the Fresnel term */
+    float coat_n_dot_v;      /* [HDRP_BRDF_N_DOT_V_MIN,1] */
+    float below_coat;        /* [0,1] share of light from v that the coat lets through */
 };
 HDRP_TYPEDEF(hdrp_brdf_lit_view)
 
@@ -426,13 +427,68 @@ HDRP_FN hdrp_brdf_lit_view hdrp_i_brdf_lit_view_set_fresnel(hdrp_brdf_lit_view w
     return w;
 }
 
+/** No dependence on the azimuth, for a lobe of equal widths. */
+HDRP_FN hdrp_brdf_fgd_stretch hdrp_i_brdf_lit_no_stretch(float alpha)
+{
+    hdrp_brdf_fgd_stretch s;
+    s.widths2 = hdrp_v3_splat(alpha * alpha);
+    s.loss_n1 = hdrp_v2_make(0.0f, 0.0f);
+    s.loss_d1 = hdrp_v3_splat(0.0f);
+    s.loss_n2 = s.loss_n1;
+    s.cosine0 = s.loss_n1;
+    s.cosine1 = s.loss_n1;
+    s.cosine2 = s.loss_n1;
+    return s;
+}
+
+/** w with the fit of the directional albedo of the base lobe. */
+HDRP_FN hdrp_brdf_lit_view hdrp_i_brdf_lit_view_set_fit(hdrp_brdf_lit_view w, hdrp_brdf_data d,
+                                                        hdrp_u32 features)
+{
+    if ((features & HDRP_BRDF_FEATURE_ANISOTROPY) != 0u) {
+        w.fit = hdrp_brdf_fgd_fit_make_aniso(w.alphas);
+        w.stretch = hdrp_brdf_fgd_stretch_make(w.alphas);
+        return w;
+    }
+    w.fit = hdrp_brdf_fgd_fit_make(d.perceptual_roughness);
+    w.stretch = hdrp_i_brdf_lit_no_stretch(w.alphas.t);
+    return w;
+}
+
+/** FGD of the base lobe from its fit, in a direction whose cosine is given too. */
+HDRP_FN hdrp_brdf_fgd hdrp_i_brdf_lit_fgd(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdrp_v3 x,
+                                          float n_dot_x, hdrp_u32 features)
+{
+    hdrp_brdf_fgd_fit fit = w.fit;
+    if ((features & HDRP_BRDF_FEATURE_ANISOTROPY) != 0u) {
+        fit = hdrp_brdf_fgd_fit_towards(fit, w.stretch, hdrp_v3_dot(d.tangent, x),
+                                        hdrp_v3_dot(d.bitangent, x), n_dot_x);
+    }
+    return hdrp_brdf_fgd_from_fit(fit, n_dot_x);
+}
+
+/** FGD of a round lobe, changed by what the fit of the stretched one differs from its own. */
+HDRP_FN hdrp_brdf_fgd hdrp_i_brdf_fgd_stretched(hdrp_brdf_fgd fgd, hdrp_brdf_fgd stretched,
+                                                hdrp_brdf_fgd isotropic)
+{
+    hdrp_brdf_fgd f;
+    f.albedo = hdrp_saturate(fgd.albedo + (stretched.albedo - isotropic.albedo));
+    f.schlick = hdrp_clamp(fgd.schlick + (stretched.schlick - isotropic.schlick), 0.0f, f.albedo);
+    return f;
+}
+
 /** w with what all lights share of the lobes of the base. */
 HDRP_FN hdrp_brdf_lit_view hdrp_i_brdf_lit_view_set_lobes(hdrp_brdf_lit_view w, hdrp_brdf_data d,
-                                                          hdrp_brdf_fgd fgd)
+                                                          hdrp_brdf_fgd mean_fgd, hdrp_u32 features)
 {
-    hdrp_brdf_fgd own = hdrp_brdf_fgd_from_fit(w.fit, w.n_dot_v);
+    hdrp_brdf_fgd own = hdrp_i_brdf_lit_fgd(d, w, w.v, w.n_dot_v, features);
+    hdrp_brdf_fgd fgd = mean_fgd;
     hdrp_v3 below = hdrp_v3_sub(hdrp_v3_splat(1.0f), w.fresnel0);
     hdrp_v3 share, mean;
+    if ((features & HDRP_BRDF_FEATURE_ANISOTROPY) != 0u) {
+        fgd = hdrp_i_brdf_fgd_stretched(mean_fgd, own,
+                                        hdrp_brdf_fgd_fast(w.n_dot_v, d.perceptual_roughness));
+    }
     w.bounces = hdrp_brdf_bounces_make(w.fit, w.fresnel0, w.fresnel90);
     w.multiscatter = (1.0f - own.albedo) * HDRP_INV_PI / w.fit.mean_loss;
     w.specular_albedo =
@@ -483,7 +539,10 @@ HDRP_FN hdrp_v3 hdrp_i_brdf_slab_share(hdrp_v3 diffuse_color, hdrp_v3 transmitta
  *  error     none: composed of the functions above
  *  source    Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
  *            Definition Render Pipeline", slides on the Lit shader
- *  note      light that crosses a thin slab is missing from its front, unlike in the source */
+ *  note      light that crosses a thin slab is missing from its front, unlike in the source. A
+ *            white surface reflects at most 1.005 of what it receives, and at least 0.99; where it
+ *            is anisotropic and not a metal at least 0.97 (anisotropy 0.5) and 0.93 (1), for an
+ *            n_dot_v of at least 0.05 */
 HDRP_FN hdrp_brdf_lit_view hdrp_brdf_lit_view_make(hdrp_brdf_data d, hdrp_v3 v, hdrp_brdf_fgd fgd,
                                                    hdrp_u32 features)
 {
@@ -491,9 +550,9 @@ HDRP_FN hdrp_brdf_lit_view hdrp_brdf_lit_view_make(hdrp_brdf_data d, hdrp_v3 v, 
     w.v = hdrp_i_brdf_facing(v, d.normal);
     w.n_dot_v = hdrp_clamp(hdrp_v3_dot(d.normal, w.v), HDRP_BRDF_N_DOT_V_MIN, 1.0f);
     w.alphas = hdrp_i_brdf_lit_alphas(d, features);
-    w.fit = hdrp_brdf_fgd_fit_make_aniso(w.alphas);
+    w = hdrp_i_brdf_lit_view_set_fit(w, d, features);
     w = hdrp_i_brdf_lit_view_set_fresnel(w, d, features);
-    w = hdrp_i_brdf_lit_view_set_lobes(w, d, fgd);
+    w = hdrp_i_brdf_lit_view_set_lobes(w, d, fgd, features);
     if ((features & HDRP_BRDF_FEATURE_TRANSMISSION) != 0u) {
         w = hdrp_i_brdf_lit_view_scale_diffuse(
             w, hdrp_i_brdf_slab_share(d.diffuse_color, hdrp_i_brdf_slab_transmittance(d)));
@@ -585,7 +644,7 @@ HDRP_FN hdrp_brdf_lit hdrp_brdf_lit_eval(hdrp_brdf_data d, hdrp_brdf_lit_view w,
     float l_dot_h = hdrp_saturate(hdrp_v3_dot(l, h));
     hdrp_v3 f = hdrp_i_brdf_lit_f(d, w, l_dot_h, features);
     float dv = hdrp_i_brdf_lit_dv(d, w, l, h, front, features) * front;
-    hdrp_brdf_fgd fgd = hdrp_brdf_fgd_from_fit(w.fit, hdrp_abs(n_dot_l));
+    hdrp_brdf_fgd fgd = hdrp_i_brdf_lit_fgd(d, w, l, hdrp_abs(n_dot_l), features);
     hdrp_v3 diffuse = hdrp_v3_mul(w.diffuse, hdrp_brdf_diffuse_share(fgd, w.bounces, w.fresnel90));
     float again = w.multiscatter * (1.0f - fgd.albedo) * front;
     r.specular = hdrp_v3_mad(hdrp_v3_scale(f, dv), w.bounces.reflected, again);
@@ -673,10 +732,10 @@ HDRP_FN hdrp_brdf_lit_env hdrp_i_brdf_lit_env_set_transmitted(hdrp_brdf_lit_env 
 /** e with the coat, which dims what lies below it. Light of the specular lobe is taken to meet the
  *  coat at the angles at which it meets the microfacets, diffuse light at all angles. */
 HDRP_FN hdrp_brdf_lit_env hdrp_i_brdf_lit_env_set_coat(hdrp_brdf_lit_env e, hdrp_brdf_data d,
-                                                       hdrp_brdf_lit_view w)
+                                                       hdrp_brdf_lit_view w, hdrp_u32 features)
 {
     hdrp_brdf_fgd coat = hdrp_brdf_fgd_fast(w.coat_n_dot_v, d.coat_perceptual_roughness);
-    hdrp_brdf_fgd base = hdrp_brdf_fgd_from_fit(w.fit, w.n_dot_v);
+    hdrp_brdf_fgd base = hdrp_i_brdf_lit_fgd(d, w, w.v, w.n_dot_v, features);
     float weight = base.schlick / base.albedo;
     float lobe = 1.0f - d.coat_mask * hdrp_lerp(HDRP_BRDF_COAT_FRESNEL0, 1.0f, weight);
     float all_around = 1.0f - d.coat_mask * HDRP_I_BRDF_COAT_FRESNEL_MEAN;
@@ -726,7 +785,7 @@ HDRP_FN hdrp_brdf_lit_env hdrp_brdf_lit_env_make(hdrp_brdf_data d, hdrp_brdf_lit
         e = hdrp_i_brdf_lit_env_set_transmitted(e, d, w);
     }
     if ((features & HDRP_BRDF_FEATURE_CLEAR_COAT) != 0u) {
-        e = hdrp_i_brdf_lit_env_set_coat(e, d, w);
+        e = hdrp_i_brdf_lit_env_set_coat(e, d, w, features);
     }
     e.through_weight = hdrp_v3_splat(0.0f);
     if ((features & HDRP_BRDF_FEATURE_TRANSMISSION) != 0u) {

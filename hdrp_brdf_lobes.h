@@ -21,8 +21,8 @@
  *       v_smith_ggx_fast d_ggx_aniso d_ggx_aniso_vectors v_smith_ggx_aniso
  *   sampling ggx: sample_vndf pdf_vndf
  *   anisotropy: alphas_kulla alphas_disney kulla_from_alphas env_lobe_aniso
- *   directional albedo: fgd_uv fgd_fit_make_aniso fgd_fit_make fgd_from_fit fgd_fast
- *       energy_compensation bounces_make multiscatter specular_albedo
+ *   directional albedo: fgd_uv fgd_fit_make fgd_fit_make_aniso fgd_stretch_make fgd_fit_towards
+ *       fgd_from_fit fgd_fast energy_compensation bounces_make multiscatter specular_albedo
  *   diffuse: diffuse_disney diffuse_disney_normalized diffuse_share diffuse_share_mean diffuse
  *   thin film: film film_exact film_airy film_fast fresnel0_from_schlick
  *   transmission: refract volume_transmittance refraction_perceptual_roughness btdf_ggx
@@ -654,21 +654,22 @@ HDRP_FN float hdrp_i_brdf_cubic(float a, float b, float c, float d, float x)
     return a + x * (b + x * (c + x * d));
 }
 
-/** The analytic fit of FGD of an anisotropic lobe, the same for all azimuths.
- *  alphas   valid   GGX widths along the tangent and the bitangent
- *  returns  finite
- *  edges    equal widths give the fit of the isotropic lobe; widths above 1 act as 1
- *  error    none: see hdrp_brdf_fgd_fast, whose coefficients these are
- *  source   our own minimax fit to a quadrature, by tools/fit_brdf.py
- *  note     the loss is that of the mean width. The weights of the Fresnel term are those of the
- *           narrower one, which reflects most at grazing: a diffuse lobe coupled to it never gains
- *           energy there. See hdrp_brdf_lit_view_make for what that does to a furnace */
-HDRP_FN hdrp_brdf_fgd_fit hdrp_brdf_fgd_fit_make_aniso(hdrp_brdf_alphas alphas)
+/** fit with the effective cosine of a width, given as its root. */
+HDRP_FN hdrp_brdf_fgd_fit hdrp_i_brdf_fgd_fit_set_cosine(hdrp_brdf_fgd_fit fit, float q)
+{
+    hdrp_brdf_fgd_fit f = fit;
+    f.cosine_n.x = q * (0.108742684f + q * hdrp_i_brdf_cubic(2.90460491f, -6.76332474f, 6.75303411f,
+                                                             -2.55623007f, q));
+    f.cosine_n.y = hdrp_i_brdf_cubic(-0.16311945f, -0.653872967f, 0.128006995f, 0.0f, q);
+    f.cosine_d = hdrp_i_brdf_cubic(0.72819525f, -1.34152937f, 1.71405375f, -1.40320504f, q);
+    return f;
+}
+
+/** The analytic fit of FGD at one width. */
+HDRP_FN hdrp_brdf_fgd_fit hdrp_i_brdf_fgd_fit_alpha(float a)
 {
     hdrp_brdf_fgd_fit f;
-    float a = hdrp_clamp(0.5f * (alphas.t + alphas.b), HDRP_ALPHA_MIN, 1.0f);
-    float p = hdrp_sqrt(a);
-    float q = hdrp_sqrt(hdrp_clamp(hdrp_min(alphas.t, alphas.b), HDRP_ALPHA_MIN, 1.0f));
+    float q = hdrp_sqrt(a);
     float mean;
     f.inverse_alpha = 1.0f / a;
     f.loss_n.x = hdrp_i_brdf_cubic(0.230199918f, 0.0611920953f, 3.76339936f, 1.48308444f, a);
@@ -677,13 +678,10 @@ HDRP_FN hdrp_brdf_fgd_fit hdrp_brdf_fgd_fit_make_aniso(hdrp_brdf_alphas alphas)
     f.loss_d.y =
         0.127423942f + a * hdrp_i_brdf_cubic(-6.9580822f, 11.5299244f, 38.5920219f, 50.5328941f, a);
     f.loss_d.z = hdrp_i_brdf_cubic(0.310372114f, 1.56204367f, 26.442585f, -33.816391f, a);
-    mean = hdrp_i_brdf_cubic(39.3234062f, -60.8898277f, 46.7970543f, -13.6633568f, p);
-    mean = hdrp_i_brdf_cubic(0.0636951923f, 2.37435579f, -12.3076382f, mean, p);
+    mean = hdrp_i_brdf_cubic(39.3234062f, -60.8898277f, 46.7970543f, -13.6633568f, q);
+    mean = hdrp_i_brdf_cubic(0.0636951923f, 2.37435579f, -12.3076382f, mean, q);
     f.mean_loss = a * a / mean;
-    f.cosine_n.x = q * (0.108742684f + q * hdrp_i_brdf_cubic(2.90460491f, -6.76332474f, 6.75303411f,
-                                                             -2.55623007f, q));
-    f.cosine_n.y = hdrp_i_brdf_cubic(-0.16311945f, -0.653872967f, 0.128006995f, 0.0f, q);
-    f.cosine_d = hdrp_i_brdf_cubic(0.72819525f, -1.34152937f, 1.71405375f, -1.40320504f, q);
+    f = hdrp_i_brdf_fgd_fit_set_cosine(f, q);
     f.mean_schlick = 0.0467854775f + q * hdrp_i_brdf_cubic(0.0539289117f, -0.480697751f,
                                                            0.645444334f, -0.262367249f, q);
     return f;
@@ -697,10 +695,155 @@ HDRP_FN hdrp_brdf_fgd_fit hdrp_brdf_fgd_fit_make_aniso(hdrp_brdf_alphas alphas)
  *  source                our own minimax fit to a quadrature, by tools/fit_brdf.py */
 HDRP_FN hdrp_brdf_fgd_fit hdrp_brdf_fgd_fit_make(float perceptual_roughness)
 {
-    hdrp_brdf_alphas a;
-    a.t = hdrp_brdf_alpha_from_perceptual_roughness(perceptual_roughness);
-    a.b = a.t;
-    return hdrp_brdf_fgd_fit_make_aniso(a);
+    return hdrp_i_brdf_fgd_fit_alpha(
+        hdrp_brdf_alpha_from_perceptual_roughness(perceptual_roughness));
+}
+
+/** Mean width, limited as the fit of FGD needs it. */
+HDRP_FN float hdrp_i_brdf_mean_alpha(hdrp_brdf_alphas a)
+{
+    return hdrp_clamp(0.5f * (a.t + a.b), HDRP_ALPHA_MIN, 1.0f);
+}
+
+/** Difference of the widths over their sum. */
+HDRP_FN float hdrp_i_brdf_anisotropy(hdrp_brdf_alphas a)
+{
+    return hdrp_clamp((a.t - a.b) / hdrp_max(a.t + a.b, HDRP_ALPHA_MIN), -1.0f, 1.0f);
+}
+
+/* How the fit of a stretched lobe depends on the azimuth. Made by hdrp_brdf_fgd_stretch_make. */
+struct hdrp_brdf_fgd_stretch {
+    hdrp_v3 widths2; /* squared widths along tangent, bitangent and, their mean, normal */
+    hdrp_v2 loss_n1; /* changes of the coefficients of the fit: odd in the azimuth */
+    hdrp_v3 loss_d1;
+    hdrp_v2 loss_n2; /* and quadratic in it */
+    hdrp_v2 cosine0; /* even */
+    hdrp_v2 cosine1;
+    hdrp_v2 cosine2;
+};
+HDRP_TYPEDEF(hdrp_brdf_fgd_stretch)
+
+/** The even part of the fit of a stretched lobe: what all azimuths share.
+ *  alphas   valid   GGX widths along the tangent and the bitangent
+ *  returns  finite
+ *  edges    equal widths give the fit of the isotropic lobe; widths whose mean is above 1 are
+ *           narrowed together
+ *  error    <= 0.006 absolute, of mean_loss  @accuracy brdf_fgd_fit_aniso_mean
+ *  source   our own minimax fit to a quadrature, by tools/fit_brdf.py
+ *  note     the means over the hemisphere are those of the stretched lobe */
+HDRP_FN hdrp_brdf_fgd_fit hdrp_brdf_fgd_fit_make_aniso(hdrp_brdf_alphas alphas)
+{
+    float a = hdrp_i_brdf_mean_alpha(alphas);
+    float k2 = hdrp_sq(hdrp_i_brdf_anisotropy(alphas));
+    float p = hdrp_sqrt(a);
+    hdrp_brdf_fgd_fit f = hdrp_i_brdf_fgd_fit_alpha(a);
+    float more;
+    f.loss_n.x +=
+        k2 * (hdrp_i_brdf_cubic(-0.0365382768f, -0.561783612f, 9.2477684f, -0.50158757f, a));
+    f.loss_n.y +=
+        k2 * (a * hdrp_i_brdf_cubic(0.192181572f, -4.58993721f, 11.7414341f, 91.8174667f, a));
+    f.loss_d.x += k2 * (hdrp_i_brdf_cubic(-0.710474253f, 5.67636585f, 2.31629038f, 0.0f, a));
+    f.loss_d.y += k2 * (0.451539516f + a * hdrp_i_brdf_cubic(-6.14876413f, 49.4379501f,
+                                                             -126.116585f, 167.572815f, a));
+    f.loss_d.z +=
+        k2 * (hdrp_i_brdf_cubic(-0.127950728f, 1.85519719f, -27.1330452f, 66.9026718f, a));
+    more = hdrp_i_brdf_cubic(
+        0.448553383f, 15.0812578f, -126.09687f,
+        hdrp_i_brdf_cubic(403.127869f, -613.524536f, 446.223267f, -125.012283f, p), p);
+    more += k2 * hdrp_i_brdf_cubic(
+                     1.78151751f, -32.9540901f, 199.506119f,
+                     hdrp_i_brdf_cubic(-548.247375f, 756.980591f, -513.495117f, 136.356628f, p), p);
+    f.mean_loss *= 1.0f + k2 * more;
+    more = 0.0118954964f +
+           p * hdrp_i_brdf_cubic(-0.16995661f, 0.687934995f, -1.0397197f, 0.511018336f, p);
+    more += k2 * (-0.0243139695f +
+                  p * hdrp_i_brdf_cubic(0.375031084f, -1.22574711f, 1.6955297f, -0.784876227f, p));
+    f.mean_schlick += k2 * more;
+    return f;
+}
+
+/** How the fit of a stretched lobe depends on the azimuth.
+ *  alphas   valid   GGX widths along the tangent and the bitangent
+ *  returns  finite
+ *  edges    no dependence for equal widths; widths whose mean is above 1 are narrowed together
+ *  error    none: see hdrp_brdf_fgd_fit_towards, whose coefficients these are
+ *  source   our own minimax fit to a quadrature, by tools/fit_brdf.py */
+HDRP_FN hdrp_brdf_fgd_stretch hdrp_brdf_fgd_stretch_make(hdrp_brdf_alphas alphas)
+{
+    hdrp_brdf_fgd_stretch s;
+    float a = hdrp_i_brdf_mean_alpha(alphas);
+    float k = hdrp_i_brdf_anisotropy(alphas);
+    float k2 = k * k;
+    float p = hdrp_sqrt(a);
+    s.widths2 = hdrp_v3_make(hdrp_sq(a * (1.0f + k)), hdrp_sq(a * (1.0f - k)), a * a * (1.0f + k2));
+    s.loss_n1.x =
+        k * (hdrp_i_brdf_cubic(0.021816276f, -0.289882451f, -2.72518682f, 0.19281739f, a));
+    s.loss_n1.y =
+        k * (a * hdrp_i_brdf_cubic(-0.125557095f, 4.87546778f, -39.774601f, 7.00308943f, a));
+    s.loss_d1.x = k * (hdrp_i_brdf_cubic(0.30317235f, -4.86158752f, -2.28528261f, 0.0f, a));
+    s.loss_d1.y = k * (-0.148174316f + a * hdrp_i_brdf_cubic(2.39053774f, 2.02934384f, -27.4319382f,
+                                                             -34.8882942f, a));
+    s.loss_d1.z = k * (hdrp_i_brdf_cubic(0.0389700271f, 0.440541476f, -16.3739471f, 36.146656f, a));
+    s.loss_n2.x =
+        k2 * (hdrp_i_brdf_cubic(-0.00447614538f, 0.42620489f, -2.13635612f, 0.631659448f, a));
+    s.loss_n2.y =
+        k2 * (a * hdrp_i_brdf_cubic(0.00193235814f, 0.427789181f, -0.572329223f, -9.9255228f, a));
+    s.cosine0.x =
+        k2 * (p * hdrp_i_brdf_cubic(-0.128583863f, 0.293234527f, -0.599202693f, 0.363714516f, p));
+    s.cosine0.y = k2 * (hdrp_i_brdf_cubic(-1.65695548f, 3.32654738f, -1.91087556f, 0.0f, p));
+    s.cosine1.x =
+        k * (p * hdrp_i_brdf_cubic(0.0259205401f, 0.0163689982f, -0.225944281f, 0.16883482f, p));
+    s.cosine1.y = k * (hdrp_i_brdf_cubic(-0.0419251472f, 0.60389179f, -0.62493813f, 0.0f, p));
+    s.cosine2.x =
+        k2 * (p * hdrp_i_brdf_cubic(0.107054897f, -0.667779207f, 1.29617476f, -0.706300318f, p));
+    s.cosine2.y = k2 * (hdrp_i_brdf_cubic(1.27012897f, -2.32210565f, 0.835886657f, 0.0f, p));
+    return s;
+}
+
+/** The fit of a stretched lobe in the plane of one direction, for hdrp_brdf_fgd_from_fit.
+ *  fit      valid   made by hdrp_brdf_fgd_fit_make_aniso
+ *  stretch  valid   made by hdrp_brdf_fgd_stretch_make of the same widths
+ *  t_dot_x  [-1,1]  direction along the tangent
+ *  b_dot_x  [-1,1]  along the bitangent
+ *  n_dot_x  [-1,1]  along the normal
+ *  returns  finite
+ *  edges    fit, up to rounding, for equal widths; vectors shorter than 1 act as limited
+ *  error    <= 0.012 absolute, of albedo above the true one, n_dot_x of at least 3e-4
+ *           @accuracy brdf_fgd_fit_towards_above
+ *  error    <= 0.0055 absolute, of albedo below it, likewise  @accuracy brdf_fgd_fit_towards_below
+ *  error    <= 0.065 absolute, of schlick, anisotropy within -0.75 to 0.75, likewise
+ *           @accuracy brdf_fgd_fit_towards_schlick
+ *  error    <= 0.0065 absolute, of schlick below the true one at any anisotropy, likewise
+ *           @accuracy brdf_fgd_fit_towards_schlick_below
+ *  source   our own minimax fit to a quadrature, by tools/fit_brdf.py
+ *  note     the loss is a rational function of the cosine over the width in the plane of the
+ *           direction, with coefficients quadratic in the cosine of twice the azimuth in the space
+ *           where the lobe is round. Facets tilted sideways are met at grazing angles, like those
+ *           of a narrow lobe: with them the width falls that the Fresnel term sees */
+HDRP_FN hdrp_brdf_fgd_fit hdrp_brdf_fgd_fit_towards(hdrp_brdf_fgd_fit fit,
+                                                    hdrp_brdf_fgd_stretch stretch, float t_dot_x,
+                                                    float b_dot_x, float n_dot_x)
+{
+    hdrp_v3 w = stretch.widths2;
+    float t = w.x * t_dot_x * t_dot_x;
+    float b = w.y * b_dot_x * b_dot_x;
+    /* The floor is that of the narrowest lobe. */
+    float along = hdrp_max(t + b + w.z * n_dot_x * n_dot_x, HDRP_ALPHA_MIN * HDRP_ALPHA_MIN);
+    float across = hdrp_max(w.x + w.y - along, 0.0f);
+    float turn = (t - b) / along;
+    float lobe = hdrp_sqrt(along * (1.0f + 1.5f * along) / (1.0f + 1.5f * across));
+    float q = hdrp_sqrt(lobe);
+    float narrow = hdrp_clamp(q, 0.01f, 1.0f);
+    hdrp_brdf_fgd_fit f = hdrp_i_brdf_fgd_fit_set_cosine(fit, narrow);
+    f.inverse_alpha = 1.0f / hdrp_sqrt(along);
+    f.loss_n.x += turn * (stretch.loss_n1.x + turn * stretch.loss_n2.x);
+    f.loss_n.y += turn * (stretch.loss_n1.y + turn * stretch.loss_n2.y);
+    f.loss_d = hdrp_v3_mad(f.loss_d, stretch.loss_d1, turn);
+    f.cosine_n.x += stretch.cosine0.x + turn * (stretch.cosine1.x + turn * stretch.cosine2.x);
+    f.cosine_n.x += 0.164126456f * hdrp_max(q - 1.0f, 0.0f);
+    f.cosine_n.y += stretch.cosine0.y + turn * (stretch.cosine1.y + turn * stretch.cosine2.y);
+    f.cosine_d *= hdrp_sqrt(along) / (narrow * narrow); /* in the cosine over its own width */
+    return f;
 }
 
 /** FGD of one direction from the fit of its roughness.

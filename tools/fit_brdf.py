@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Derives the fitted constants of hdrp_brdf_lobes.h: fit_brdf.py [fgd] [film]
+"""Derives the fitted constants of hdrp_brdf_lobes.h: fit_brdf.py [fgd] [stretch] [film]
 
 Needs numpy and scipy (Debian: python3-numpy python3-scipy); the build and the tests do not run it.
 Prints the coefficients in the order of the code, lowest power first, and the largest error of each
@@ -209,6 +209,277 @@ def means(loss, ratio):
     fit_mean("mean_schlick", p, mean_schlick, np.ones_like(p), 0, 4)
 
 
+# ---- directional albedo, anisotropic -----------------------------------------------------------
+
+# The isotropic fits as hdrp_brdf_lobes.h has them, lowest power of alpha or of its root first. The
+# corrections for stretched lobes are added to them and vanish for equal widths.
+ISO_LOSS = ((0.230199918, 0.0611920953, 3.76339936, 1.48308444),
+            (0, -0.180100933, 7.54789209, -13.2210388, 89.1957245),
+            (0.674825966, 5.26004457, 32.7332573),
+            (0.127423942, -6.9580822, 11.5299244, 38.5920219, 50.5328941),
+            (0.310372114, 1.56204367, 26.442585, -33.816391))
+ISO_COSINE = ((0, 0.108742684, 2.90460491, -6.76332474, 6.75303411, -2.55623007),
+              (-0.16311945, -0.653872967, 0.128006995),
+              (0.72819525, -1.34152937, 1.71405375, -1.40320504))
+ISO_MEAN_LOSS = (0.0636951923, 2.37435579, -12.3076382, 39.3234062, -60.8898277, 46.7970543,
+                 -13.6633568)
+ISO_MEAN_SCHLICK = (0.0467854775, 0.0539289117, -0.480697751, 0.645444334, -0.262367249)
+
+
+def polynomial(coefficients, x):
+    return np.polynomial.polynomial.polyval(x, coefficients)
+
+
+def stretched_albedos(mu, phi, at, ab, side=88):
+    """(albedo for F = 1, the same weighted by Schlick) by visible normals (Dupuy and Benyoub 2023)
+    of stratified numbers."""
+    u = (np.arange(side) + 0.5) / side
+    turn, z = 2 * np.pi * u[:, None], u[None, :]
+    s = np.sqrt(1 - mu * mu)
+    v = np.array([s * np.cos(phi), s * np.sin(phi), mu])
+    w = np.array([at * v[0], ab * v[1], v[2]])
+    w /= np.sqrt(w @ w)
+    z = (1 - z) * (1 + w[2]) - w[2]
+    r = np.sqrt(np.clip(1 - z * z, 0, 1))
+    h = np.stack([at * (r * np.cos(turn) + w[0]), ab * (r * np.sin(turn) + w[1]),
+                  np.maximum(z + w[2], 1e-12) + 0 * turn])
+    h /= np.sqrt((h * h).sum(0))
+    c = np.tensordot(v, h, 1)
+    l = 2 * c * h - v[:, None, None]
+
+    def shadowing(x, y, z):
+        return 0.5 * np.sqrt(1 + ((at * x)**2 + (ab * y)**2) / np.maximum(z, 1e-9)**2) - 0.5
+
+    own = 1 + shadowing(*v)
+    kept = np.where(l[2] > 0, own / (own + shadowing(*l)), 0)
+    return kept.mean(), (kept * (1 - np.clip(c, 0, 1))**5).mean()
+
+
+class StretchedGrid:
+    """Albedos over roughness, anisotropy and direction, with the variables of the fit."""
+
+    ANISOTROPIES = (0.12, 0.25, 0.38, 0.5, 0.62, 0.75, 0.85, 0.93, 0.98, 1.0)
+    AZIMUTHS = np.radians((0, 20, 40, 55, 65, 73, 80, 86, 90))
+
+    def __init__(self, rows=19, columns=26):
+        p = PERCEPTUAL_ROUGHNESS_MIN + (1 - PERCEPTUAL_ROUGHNESS_MIN) * np.linspace(0, 1, rows)
+        table = []
+        for alpha in p * p:
+            for k in self.ANISOTROPIES:
+                at, ab = np.maximum(alpha * np.array((1 + k, 1 - k)), 1e-4)
+                scale = np.clip(0.5 * ab, 3e-4, 0.02)
+                s = np.arange(1, columns + 1) / columns
+                for mu in np.minimum(scale * np.sinh(s * np.arcsinh(1 / scale)), 1):
+                    table += [(at, ab, mu, phi, *stretched_albedos(mu, phi, at, ab))
+                              for phi in self.AZIMUTHS]
+        self.at, self.ab, self.mu, phi, self.albedo, schlick = np.array(table).T
+        self.loss, self.ratio = 1 - self.albedo, schlick / self.albedo
+        s = np.sqrt(1 - self.mu**2)
+        self.x, self.y = s * np.cos(phi), s * np.sin(phi)
+
+
+class Stretch:
+    """Variables of the fit: mean width, anisotropy, cosine over the width towards the direction,
+    and the azimuth in the space where the lobe is round."""
+
+    def __init__(self, at, ab, x, y, mu):
+        self.mu, self.alpha, self.k = mu, 0.5 * (at + ab), (at - ab) / (at + ab)
+        x2, y2, z2 = (at * x)**2, (ab * y)**2, 0.5 * (at**2 + ab**2) * mu**2
+        along = x2 + y2 + z2  # squared width in the plane of the direction
+        across = np.maximum(at**2 + ab**2 - along, 0)
+        self.t = mu / np.sqrt(along)
+        self.turn = (x2 - y2) / along
+        # Facets that are tilted sideways are met at grazing angles, as those of narrow lobes are.
+        self.lobe = np.sqrt(along * (1 + 1.5 * along) / (1 + 1.5 * across))
+
+    def columns(self, terms, base):
+        """One column for each coefficient: parts are even, odd and quadratic in the azimuth."""
+        part = (self.k**2, self.k * self.turn, (self.k * self.turn)**2)
+        return [part[i] * base**n for i, powers in enumerate(terms) for n in powers]
+
+
+def powers(low, high):
+    return range(low, high + 1)
+
+
+# For each coefficient the powers in its even, odd and quadratic part.
+LOSS_TERMS = tuple((p, p, q) for p, q in (
+    (powers(0, 3), powers(0, 3)), (powers(1, 4), powers(1, 4)), (powers(0, 2), ()),
+    (powers(0, 4), ()), (powers(0, 3), ())))
+COSINE_TERMS = ((powers(1, 4),) * 3, (powers(0, 2),) * 3)
+LOSS_NAMES = ("loss_n.x", "loss_n.y", "loss_d.x", "loss_d.y", "loss_d.z")
+COSINE_NAMES = ("cosine_n.x", "cosine_n.y")
+
+
+def rational(s, iso, terms, base, factors, split):
+    """(constant, columns) of numerator and denominator; split coefficients are the former's."""
+    result = []
+    for start, first, last in ((0.0, 0, split), (1.0, split, len(terms))):
+        constant, columns = start + 0 * s.mu, []
+        for i in range(first, last):
+            constant = constant + factors[i] * polynomial(iso[i], base)
+            columns += [factors[i] * c for c in s.columns(terms[i], base)]
+        result.append((constant, np.stack(columns, 1)))
+    return result
+
+
+def loss_parts(s):
+    t, scale = s.t, np.maximum(s.t, 1)**-3
+    parts = rational(s, ISO_LOSS, LOSS_TERMS, s.alpha, (t, t * t, t, t * t, t**3), 2)
+    return [(constant * scale, columns * scale[:, None]) for constant, columns in parts]
+
+
+class CosineModel:
+    """schlick / albedo = (1 - m)^5 with the isotropic m of the width Stretch.lobe, corrected."""
+
+    def __init__(self, s):
+        # The isotropic fit ends at a width of 1; what lies beyond adds to its first coefficient.
+        q = np.minimum(np.sqrt(s.lobe), 1)
+        self.mu, p = s.mu, np.sqrt(s.alpha)
+        x, y, d = (polynomial(c, q) for c in ISO_COSINE)
+        below = 1 + d * s.mu / (q * q)
+        self.fixed = s.mu + (x + y * s.mu) / below
+        columns = s.columns(COSINE_TERMS[0], p) + [np.maximum(np.sqrt(s.lobe) - 1, 0)]
+        columns += [s.mu * c for c in s.columns(COSINE_TERMS[1], p)]
+        self.columns = np.stack(columns, 1) / below[:, None]
+
+    def cosine(self, c):
+        return np.clip(self.fixed + self.columns @ c, 0, 1)
+
+
+def quotient(parts, x):
+    (n0, n), (d0, d) = parts
+    return (n0 + n @ x[:n.shape[1]]) / (d0 + d @ x[n.shape[1]:])
+
+
+def fit_rational(parts, target, error_of, slope, asymmetry, rounds=40):
+    """Least largest error by reweighted linear least squares (Sanathanan and Koerner); positive
+    errors count asymmetry times. error_of maps values of the quotient to errors."""
+    (n0, n), (d0, d) = parts
+    weight, below, best = slope**2, d0.copy(), (np.inf, None)
+    for step in range(rounds):
+        root = np.sqrt(weight) / below
+        a = np.concatenate([n, -d * target[:, None]], 1) * root[:, None]
+        norm = np.linalg.norm(a, axis=0)
+        a /= norm
+        x = np.linalg.solve(a.T @ a + 1e-9 * np.eye(a.shape[1]),
+                            a.T @ ((target * d0 - n0) * root)) / norm
+        raw = d0 + d @ x[n.shape[1]:]
+        below = np.maximum(raw, 1e-3 * d0)
+        error = error_of((n0 + n @ x[:n.shape[1]]) / below)
+        size = np.where(error > 0, asymmetry, -1.0) * error
+        if (raw >= below).all() and size.max() < best[0]:
+            best = (size.max(), x, error.min(), error.max())
+        if step > 2:
+            weight = weight * (np.minimum(size / np.quantile(size, 0.9995), 1) + 0.05)
+            weight = np.clip(weight / weight.mean(), 1e-3, 1e2)
+    return best
+
+
+def show_stretched(name, fit, names, terms, split):
+    print(f"{name}: {fit[2]:+.5f} {fit[3]:+.5f}")
+    start = 0
+    for label, parts in zip(names, terms):
+        for part, wanted in zip(("even", "odd", "quadratic"), parts):
+            if wanted:
+                values = fit[1][start:start + len(wanted)]
+                print(f"  {label:10} {part:9} a^{min(wanted)}: " +
+                      ", ".join(f"{np.float32(c):.9g}f" for c in values))
+            start += len(wanted)
+
+
+def stretch():
+    grid = StretchedGrid()
+    s = Stretch(grid.at, grid.ab, grid.x, grid.y, grid.mu)
+    # A loss that is too large lets a metal gain energy, a Schlick that is too small a dielectric.
+    loss = fit_rational(loss_parts(s), grid.loss, lambda q: q - grid.loss, np.ones_like(s.mu), 4.0)
+    show_stretched("loss", loss, LOSS_NAMES, LOSS_TERMS, 2)
+    model = CosineModel(s)
+    schlick = grid.albedo * grid.ratio
+    cosine = fit_cosine(model, grid, schlick + 0.003 * np.minimum(4 * s.k, 1))
+    short = schlick - grid.albedo * (1 - model.cosine(cosine))**5
+    n = sum(len(part) for part in COSINE_TERMS[0])
+    show_stretched("schlick, short by", (0, np.delete(cosine, n), short.min(), short.max()),
+                   COSINE_NAMES, COSINE_TERMS, 1)
+    print(f"  {COSINE_NAMES[0]} beyond a width of 1: {np.float32(cosine[n]):.9g}f")
+    stretched_means(loss[1].astype(np.float32), cosine.astype(np.float32))
+
+
+def fit_cosine(model, grid, target, rounds=70):
+    """Least squares (Levenberg and Marquardt) in which a Schlick that is too small counts 1000
+    times, and large errors more."""
+    pick = slice(0, None, 5)
+    albedo, target, columns = grid.albedo[pick], target[pick], model.columns[pick]
+
+    def short(c):
+        m = np.clip(model.fixed[pick] + columns @ c, 0, 1)
+        return target - albedo * (1 - m)**5, 5 * albedo * (1 - m)**4
+
+    def merit(error, small, tail):
+        return np.sum(np.where(error > 0, small, 1) * error**2 *
+                      (1 + tail * (error / 0.035)**4 / 3))
+
+    c, damping = np.zeros(columns.shape[1]), 1e-2
+    for step in range(rounds):
+        small, tail = (3, 0) if step < 8 else (1000, 1)
+        error, slope = short(c)
+        weight = np.where(error > 0, small, 1) * (1 + tail * (error / 0.035)**4)
+        jacobian = columns * slope[:, None]
+        normal = jacobian.T @ (jacobian * weight[:, None])
+        gradient = jacobian.T @ (weight * error)
+        for _ in range(8):
+            move = np.linalg.solve(normal + damping * np.diag(np.diag(normal) + 1e-9), -gradient)
+            if merit(short(c + move)[0], small, tail) < merit(error, small, tail):
+                c, damping = c + move, max(damping / 5, 1e-8)
+                break
+            damping = min(damping * 6, 1e4)
+    return c
+
+
+def stretched_means(loss, cosine):
+    """Cosine-weighted means over the hemisphere of what the fits above give, over the means of the
+    isotropic lobe of the mean width, as 1 + k^2 (polynomial in its root and k^2)."""
+    x, w = np.polynomial.legendre.leggauss(120)
+    y, v = np.polynomial.legendre.leggauss(60)
+    rows = []
+    for p in np.linspace(PERCEPTUAL_ROUGHNESS_MIN, 1, 34):
+        for k in np.linspace(0.05, 1, 20):
+            at, ab = np.maximum(p * p * np.array((1 + k, 1 - k)), 1e-4)
+            top = np.arcsinh(1 / ab)
+            q = 0.5 * top * (x + 1)
+            mu = np.clip(ab * np.sinh(q), 0, 1)
+            # Azimuths gathered at the narrow side, like those of a round lobe.
+            round_phi = 0.25 * np.pi * (y + 1)
+            phi = np.arctan2(at**0.5 * np.sin(round_phi), ab**0.5 * np.cos(round_phi))
+            jacobian = (at * ab)**0.5 / (ab * np.cos(round_phi)**2 + at * np.sin(round_phi)**2)
+            weight = np.outer(w * 0.5 * top * ab * np.cosh(q) * 2 * mu, 0.5 * v * jacobian).ravel()
+            mu, phi = (z.ravel() for z in np.meshgrid(mu, phi, indexing="ij"))
+            side = np.sqrt(1 - mu * mu)
+            s = Stretch(at + 0 * mu, ab + 0 * mu, side * np.cos(phi), side * np.sin(phi), mu)
+            lost = np.clip(quotient(loss_parts(s), loss), 0, 1)
+            m = CosineModel(s).cosine(cosine)
+            rows.append((0.5 * (at + ab), (at - ab) / (at + ab), weight @ lost,
+                         weight @ ((1 - m)**5 * (1 - lost)), weight.sum()))
+    a, k, mean_loss, mean_schlick, one = np.array(rows).T
+    print(f"  (weights add up to {one.min():.5f} to {one.max():.5f})")
+    p = np.sqrt(a)
+    # A mean loss that is too small or a mean Schlick that is too large lets energy be gained.
+    worst = 0.04 + 0.75 * np.minimum(1, 2 * mean_loss)
+    ratio = mean_loss * polynomial(ISO_MEAN_LOSS, p) / a**2
+    for name, target, size, weight in (
+            ("mean_loss over isotropic", ratio - 1, (7, 2), worst / ratio),
+            ("mean_schlick less isotropic", mean_schlick - polynomial(ISO_MEAN_SCHLICK, p),
+             (5, 2), -np.ones_like(a))):
+        columns = np.stack([p**i * k**(2 + 2 * j) for j in range(size[1])
+                            for i in range(size[0])], 1)
+        fit = lawson(lambda c: (columns @ c - target) * weight, lambda c: columns * weight[:, None],
+                     np.linalg.lstsq(columns, target, rcond=None)[0], 3.0, 40)
+        print(f"{name}: {fit[2]:+.5f} {fit[3]:+.5f}")
+        for j in range(size[1]):
+            print(f"  k^{2 + 2 * j}: " + ", ".join(
+                f"{np.float32(c):.9g}f" for c in fit[1][j * size[0]:(j + 1) * size[0]]))
+
+
 # ---- thin film ---------------------------------------------------------------------------------
 
 # Linear Rec.709 (D65) from CIE XYZ, IEC 61966-2-1.
@@ -275,7 +546,7 @@ def film():
 
 
 def main():
-    jobs = {"fgd": fgd, "film": film}
+    jobs = {"fgd": fgd, "stretch": stretch, "film": film}
     for name in sys.argv[1:] or jobs:
         jobs[name]()
 

@@ -110,6 +110,125 @@ static void fgd_lookup_grazing(acc* a)
     }
 }
 
+/* Albedos of a stretched lobe by its visible normals (Heitz 2018), stratified: side^2 of them. */
+static bq_fgd reference_stretched(const double v[3], double at, double ab, int side)
+{
+    double s[3] = {at * v[0], ab * v[1], v[2]}, length;
+    length = sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
+    double own = 0.5 + 0.5 * length / v[2];
+    bq_fgd sum = {0.0, 0.0};
+    for (int i = 0; i < side * side; ++i) {
+        double phi = 2.0 * BQ_PI * (i % side + 0.5) / side, u = (i / side + 0.5) / side;
+        double z = (1.0 - u) * (1.0 + s[2] / length) - s[2] / length;
+        double r = sqrt(fmax(1.0 - z * z, 0.0)), l[3];
+        double h[3] = {at * (r * cos(phi) + s[0] / length), ab * (r * sin(phi) + s[1] / length),
+                       z + s[2] / length};
+        double c =
+            (v[0] * h[0] + v[1] * h[1] + v[2] * h[2]) / (h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
+        double cosine = c * sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
+        for (int k = 0; k < 3; ++k) {
+            l[k] = 2.0 * c * h[k] - v[k];
+        }
+        if (l[2] > 0.0) {
+            double x = at * l[0] / l[2], y = ab * l[1] / l[2];
+            double kept = own / (own + 0.5 * sqrt(1.0 + x * x + y * y) - 0.5);
+            sum.albedo += kept / (side * side);
+            sum.schlick += kept * pow(1.0 - fmin(cosine, 1.0), 5.0) / (side * side);
+        }
+    }
+    return sum;
+}
+
+typedef struct stretched {
+    float roughness, anisotropy;
+    hdrp_brdf_alphas alphas;
+    double v[3];
+    hdrp_brdf_fgd fit;
+    bq_fgd reference;
+} stretched;
+
+static stretched random_stretched(acc* a, int i, double limit)
+{
+    stretched s;
+    s.roughness = random_roughness(a, i);
+    s.anisotropy = acc_float(i % 7 == 0 ? (i % 2 ? limit : -limit) : acc_uniform(a, -limit, limit));
+    s.alphas = hdrp_brdf_alphas_kulla(s.roughness, s.anisotropy);
+    double c = (double)random_view(a, i, 3e-4, alpha_of(s.roughness));
+    double phi = i % 5 < 2 ? 0.5 * BQ_PI * (i % 5) : acc_uniform(a, 0.0, 2.0 * BQ_PI);
+    double side = sqrt(1.0 - c * c);
+    s.v[0] = side * cos(phi);
+    s.v[1] = side * sin(phi);
+    s.v[2] = c;
+    s.reference = reference_stretched(s.v, (double)s.alphas.t, (double)s.alphas.b, 56);
+    hdrp_brdf_fgd_fit fit = hdrp_brdf_fgd_fit_towards(hdrp_brdf_fgd_fit_make_aniso(s.alphas),
+                                                      hdrp_brdf_fgd_stretch_make(s.alphas),
+                                                      (float)s.v[0], (float)s.v[1], (float)c);
+    s.fit = hdrp_brdf_fgd_from_fit(fit, (float)c);
+    return s;
+}
+
+static void add_stretched(acc* a, const stretched* s, double error)
+{
+    ACC_ADD(a, fmax(error, 0.0), "v %.9g %.9g %.9g, perceptual roughness %.9g, anisotropy %.9g",
+            s->v[0], s->v[1], s->v[2], (double)s->roughness, (double)s->anisotropy);
+}
+
+static void fgd_towards_above(acc* a)
+{
+    for (int i = 0; i < 2500; ++i) {
+        stretched s = random_stretched(a, i, 1.0);
+        add_stretched(a, &s, (double)s.fit.albedo - s.reference.albedo);
+    }
+}
+
+static void fgd_towards_below(acc* a)
+{
+    for (int i = 0; i < 2500; ++i) {
+        stretched s = random_stretched(a, i, 1.0);
+        add_stretched(a, &s, s.reference.albedo - (double)s.fit.albedo);
+    }
+}
+
+static void fgd_towards_schlick(acc* a)
+{
+    for (int i = 0; i < 2500; ++i) {
+        stretched s = random_stretched(a, i, 0.75);
+        add_stretched(a, &s, fabs((double)s.fit.schlick - s.reference.schlick));
+    }
+}
+
+static void fgd_towards_schlick_below(acc* a)
+{
+    for (int i = 0; i < 2500; ++i) {
+        stretched s = random_stretched(a, i, 1.0);
+        add_stretched(a, &s, s.reference.schlick - (double)s.fit.schlick);
+    }
+}
+
+/* Cosine-weighted over a quarter turn, nodes gathered at grazing and at the narrow side. */
+static void fgd_aniso_mean(acc* a)
+{
+    enum { NODES = 20 };
+    double x[NODES], w[NODES];
+    bq_gauss_legendre(NODES, x, w);
+    for (int i = 0; i < 40; ++i) {
+        float p = random_roughness(a, i), k = acc_float(i % 4 ? acc_uniform(a, 0.0, 1.0) : 1.0);
+        hdrp_brdf_alphas alphas = hdrp_brdf_alphas_kulla(p, k);
+        double at = (double)alphas.t, ab = (double)alphas.b, mean = 0.0, top = asinh(1.0 / ab);
+        double gather = fmax(ab / at, 1e-3), turn = asinh(0.5 * BQ_PI / gather);
+        for (int j = 0; j < NODES * NODES; ++j) {
+            double c = ab * sinh(top * x[j / NODES]), side = sqrt(fmax(1.0 - c * c, 0.0));
+            double phi = gather * sinh(turn * x[j % NODES]);
+            double v[3] = {side * sin(phi), side * cos(phi), c};
+            double weight = w[j / NODES] * top * ab * cosh(top * x[j / NODES]) * 2.0 * c;
+            weight *= w[j % NODES] * turn * gather * cosh(turn * x[j % NODES]) / (0.5 * BQ_PI);
+            mean += weight * (1.0 - reference_stretched(v, at, ab, 32).albedo);
+        }
+        ACC_ADD(a, fabs((double)hdrp_brdf_fgd_fit_make_aniso(alphas).mean_loss - mean),
+                "perceptual roughness %.9g, anisotropy %.9g", (double)p, (double)k);
+    }
+}
+
 /* One step of a ray through the microsurface, whose heights are uniform in [-1,1] (Heitz et al.
  * 2016): the height of the next hit, or 2 where the ray escapes. */
 static double next_height(double cosine, double height, double alpha, double u)
@@ -370,6 +489,11 @@ static void perceptual_roughness_filtered(acc* a)
 const acc_entry acc_brdf_albedo[] = {
     {"brdf_fgd_fast", fgd_fast},
     {"brdf_fgd_fast_albedo", fgd_fast_albedo},
+    {"brdf_fgd_fit_towards_above", fgd_towards_above},
+    {"brdf_fgd_fit_towards_below", fgd_towards_below},
+    {"brdf_fgd_fit_towards_schlick", fgd_towards_schlick},
+    {"brdf_fgd_fit_towards_schlick_below", fgd_towards_schlick_below},
+    {"brdf_fgd_fit_aniso_mean", fgd_aniso_mean},
     {"brdf_fgd_integrate", fgd_integrate},
     {"brdf_fgd_lookup", fgd_lookup},
     {"brdf_fgd_lookup_grazing", fgd_lookup_grazing},

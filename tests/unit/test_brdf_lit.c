@@ -176,7 +176,7 @@ static void environment_weights_are_the_integral_of_all_lights(void** state)
                  {"film", HDRP_BRDF_FEATURE_IRIDESCENCE, 0.006},
                  {"wall", HDRP_BRDF_FEATURE_REFRACTION, 0.006},
                  {"coat", HDRP_BRDF_FEATURE_CLEAR_COAT, 0.05},
-                 {"anisotropy", HDRP_BRDF_FEATURE_ANISOTROPY, 0.2}};
+                 {"anisotropy", HDRP_BRDF_FEATURE_ANISOTROPY, 0.05}};
     uint64_t seed = 5;
     (void)state;
     for (int k = 0; k < 6; ++k) {
