@@ -73,10 +73,27 @@ static bool load_images(app* a)
     return true;
 }
 
+/* The name that was asked for; of several, "dir/name.png" of frame 7 is "dir/name_0007.png". */
+static char* frame_path(const rd_options* o, int frame)
+{
+    const char* dot = strrchr(o->out, '.');
+    size_t size = strlen(o->out) + 16;
+    char* out = (char*)malloc(size);
+    if (out && o->frames == 1) {
+        snprintf(out, size, "%s", o->out);
+    } else if (out) {
+        snprintf(out, size, "%.*s_%04d%s", (int)(dot - o->out), o->out, frame, dot);
+    }
+    return out;
+}
+
 static bool check_outputs(app* a)
 {
-    return (a->options.frames > 1 || rd_output_check(a->options.out, &a->report)) &&
-           (!a->options.stats || rd_output_check(a->options.stats, &a->report));
+    char* first = frame_path(&a->options, 0);
+    bool ok = first ? rd_output_check(first, &a->report)
+                    : rd_fail(&a->report, a->options.out, "out of memory");
+    free(first);
+    return ok && (!a->options.stats || rd_output_check(a->options.stats, &a->report));
 }
 
 /* The sun of the procedural sky, for scenes that do not say: behind the left shoulder. */
@@ -161,25 +178,16 @@ static bool choose_camera(app* a, rd_camera* out)
                        a->scene.camera_count);
     }
     if (o->has_eye || o->has_target) {
-        *out =
-            rd_camera_look_at(o->has_eye ? o->eye : framed.eye,
-                              o->has_target ? o->target : framed.target, fov, o->width, o->height);
+        hdrp_v3 eye = o->has_eye ? o->eye : framed.eye;
+        hdrp_v3 target = o->has_target ? o->target : framed.target;
+        if (!(hdrp_v3_length(hdrp_v3_sub(target, eye)) > 0.0f)) {
+            return rd_fail(&a->report, "--eye", "is where --target is, or the scene's centre");
+        }
+        *out = rd_camera_look_at(eye, target, fov, o->width, o->height);
     } else if (a->scene.camera_count > 0 && !o->has_fov) {
         *out = rd_camera_from_scene(&a->scene, o->camera, o->width, o->height);
     }
     return true;
-}
-
-/* "dir/name.png" of frame 7 is "dir/name_0007.png". */
-static char* frame_path(const char* path, int frame)
-{
-    const char* dot = strrchr(path, '.');
-    size_t size = strlen(path) + 16;
-    char* out = (char*)malloc(size);
-    if (out) {
-        snprintf(out, size, "%.*s_%04d%s", (int)(dot - path), path, frame, dot);
-    }
-    return out;
 }
 
 static bool write_picture(app* a, const char* path)
@@ -231,10 +239,7 @@ static bool render_frames(app* a, const rd_camera* camera)
         char* path;
         bool ok;
         rd_render(&a->renderer, &c);
-        if (a->options.frames == 1) {
-            return write_picture(a, a->options.out);
-        }
-        path = frame_path(a->options.out, i);
+        path = frame_path(&a->options, i);
         ok = path ? write_picture(a, path) : rd_fail(&a->report, a->options.out, "out of memory");
         free(path);
         if (!ok) {
@@ -297,6 +302,15 @@ static bool run(app* a)
     return expose(a, &camera) && begin_rendering(a) && render_frames(a, &camera) && finish(a);
 }
 
+static void print_pictures(const rd_options* o)
+{
+    for (int i = 0; i < o->frames; ++i) {
+        char* path = frame_path(o, i);
+        printf("%s\n", path ? path : o->out);
+        free(path);
+    }
+}
+
 static void release(app* a)
 {
     rd_renderer_end(&a->renderer);
@@ -334,7 +348,7 @@ int main(int argc, char** argv)
     if (ok) {
         rd_print_warnings(&a.report, PROGRAM);
         rd_stats_print(&a.stats);
-        printf("%s\n", a.options.out);
+        print_pictures(&a.options);
     }
     release(&a);
     return ok ? 0 : report_failure(&a);

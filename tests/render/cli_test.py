@@ -29,6 +29,7 @@ WRONG = [
     (["--exposure", "1e9"], "--exposure"),
     (["--eye", "1,2"], "--eye"),
     (["--eye", "1,2,inf"], "--eye"),
+    (["--eye", "1,2,3", "--target", "1,2,3"], "--eye"),
     (["--fov", "180"], "--fov"),
     (["--camera", "99"], "--camera"),
     (["--camera", "0", "--eye", "1,2,3"], "--eye"),
@@ -36,6 +37,7 @@ WRONG = [
     (["--frames", "0"], "--frames"),
     (["--out", "picture.jpg"], "--out"),
     (["--out", "no/such/folder/picture.png"], "no/such/folder"),
+    (["--frames", "2", "--out", "no/such/folder/picture.png"], "no/such/folder"),
     (["--stats", "no/such/folder/stats.json"], "no/such/folder"),
     (["--env", "no_such_sky.exr"], "no_such_sky.exr"),
     (["--compare", "no_such_picture.exr"], "no_such_picture.exr"),
@@ -111,10 +113,12 @@ def finds_no_difference_to_itself(exe):
 
 def numbers_its_frames(exe):
     def check(folder):
-        code, _, lines = run_in(exe, folder, SMALL + ["--frames", "3", "--out", "f.png"])
+        code, said, lines = run_in(exe, folder, SMALL + ["--frames", "3", "--out", "f.png"])
         names = sorted(os.listdir(folder))
         if code != 0 or names != ["f_0000.png", "f_0001.png", "f_0002.png"]:
             return f"exit code {code}, files: {names} " + " | ".join(lines)
+        if said.splitlines()[-3:] != names:
+            return "does not name its pictures: " + said
         contents = {open(os.path.join(folder, n), "rb").read() for n in names}
         return None if len(contents) == 3 else "the camera did not move"
 
