@@ -72,9 +72,18 @@ typedef struct rd_shaded {
     float transmitted_perceptual_roughness;
 } rd_shaded;
 
+/* The light loop compiled for sets of material features, see shade.c. */
+#define RD_SHADE_VARIANTS 7
+
 typedef struct rd_shade_counts {
     uint64_t shadow_rays;
+    uint64_t samples[RD_SHADE_VARIANTS];
+    /* Of calls whose points all took the same variant. */
+    uint64_t timed_samples[RD_SHADE_VARIANTS];
+    double timed_ms[RD_SHADE_VARIANTS];
 } rd_shade_counts;
+
+const char* rd_shade_variant_name(int variant);
 
 /* At most RD_SHADE_MAX points. `index` counts the samples of a pixel. */
 void rd_shade(const rd_lighting* l, const rd_shade_point* points, uint32_t count, uint32_t index,

@@ -269,6 +269,18 @@ static bool compare(app* a)
     return true;
 }
 
+static void count_lighting(app* a)
+{
+    const rd_shade_counts* c = &a->renderer.counts.shade;
+    for (int i = 0; i < RD_SHADE_VARIANTS; ++i) {
+        if (c->samples[i] > 0) {
+            double timed = c->timed_samples[i] > 0 ? (double)c->timed_samples[i] : (double)NAN;
+            rd_stats_lit(&a->stats, rd_shade_variant_name(i), (double)c->samples[i],
+                         1e6 * c->timed_ms[i] / timed);
+        }
+    }
+}
+
 static bool finish(app* a)
 {
     const rd_render_counts* c = &a->renderer.counts;
@@ -280,6 +292,7 @@ static bool finish(app* a)
     rd_stats_count(&a->stats, "forward_samples", (double)c->forward_samples);
     rd_stats_count(&a->stats, "layer_hits", (double)c->layer_hits);
     rd_stats_limit(&a->stats, "transparent_layers_dropped", (double)c->layers_dropped);
+    count_lighting(a);
     if (!compare(a)) {
         return false;
     }

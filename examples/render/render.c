@@ -85,6 +85,11 @@ static void add_counts(rd_render_counts* sum, const rd_worker* w)
 {
     sum->primary_rays += w->counts.primary_rays;
     sum->shadow_rays += w->counts.shadow_rays + w->shade.shadow_rays;
+    for (int i = 0; i < RD_SHADE_VARIANTS; ++i) {
+        sum->shade.samples[i] += w->shade.samples[i];
+        sum->shade.timed_samples[i] += w->shade.timed_samples[i];
+        sum->shade.timed_ms[i] += w->shade.timed_ms[i];
+    }
     sum->occlusion_rays += w->counts.occlusion_rays;
     sum->path_rays += w->counts.path_rays;
     sum->deferred_samples += w->counts.deferred_samples;

@@ -15,6 +15,7 @@
 typedef struct rd_render_counts {
     uint64_t primary_rays, shadow_rays, occlusion_rays, path_rays;
     uint64_t deferred_samples, forward_samples, layer_hits, layers_dropped;
+    rd_shade_counts shade;
 } rd_render_counts;
 
 /* A sub-frame is the whole image at one sample a pixel. Every pass of the pipeline runs over it by

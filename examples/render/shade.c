@@ -8,6 +8,7 @@
  * GBuffer texel carries chooses the variant, as tile classification does on a GPU. */
 
 typedef struct variant {
+    const char* name;
     hdrp_u32 features;
     void (*view)(const rd_shade_point* p, hdrp_brdf_fgd fgd, hdrp_brdf_lit_view* out);
     hdrp_brdf_lit (*eval)(const rd_shade_point* p, const hdrp_brdf_lit_view* view, hdrp_v3 l,
@@ -61,11 +62,11 @@ DEFINE_VARIANT(all, EVERYTHING)
 
 #define VARIANT(name, features)                                                                    \
     {                                                                                              \
-        features, view_##name, eval_##name, env_##name                                             \
+#name, features, view_##name, eval_##name, env_##name                                      \
     }
 
 /* From few features to all: the first that has what a material needs serves. */
-static const variant variants[] = {
+static const variant variants[RD_SHADE_VARIANTS] = {
     VARIANT(standard, 0u),
     VARIANT(anisotropy, HDRP_BRDF_FEATURE_ANISOTROPY),
     VARIANT(iridescence, HDRP_BRDF_FEATURE_IRIDESCENCE),
@@ -82,6 +83,11 @@ static const variant* find_variant(hdrp_u32 features)
         ++v;
     }
     return v;
+}
+
+const char* rd_shade_variant_name(int i)
+{
+    return variants[i].name;
 }
 
 /* >>a run of points */
@@ -277,16 +283,32 @@ static void add_environment(const run* r)
     }
 }
 
-void rd_shade(const rd_lighting* l, const rd_shade_point* points, uint32_t count, uint32_t index,
-              rd_shaded* out, rd_shade_counts* counts)
+static void count(const run* r, double ms)
+{
+    rd_shade_counts* c = r->counts;
+    ptrdiff_t first = r->variants[0] - variants;
+    bool same = true;
+    for (uint32_t i = 0; i < r->count; ++i) {
+        ++c->samples[r->variants[i] - variants];
+        same = same && r->variants[i] == r->variants[0];
+    }
+    if (same) {
+        c->timed_samples[first] += r->count;
+        c->timed_ms[first] += ms;
+    }
+}
+
+void rd_shade(const rd_lighting* l, const rd_shade_point* points, uint32_t point_count,
+              uint32_t index, rd_shaded* out, rd_shade_counts* counts)
 {
     run r;
-    if (count == 0) {
+    double start = rd_now_ms();
+    if (point_count == 0) {
         return;
     }
     r.lighting = l;
     r.points = points;
-    r.count = count;
+    r.count = point_count;
     r.index = index;
     r.out = out;
     r.counts = counts;
@@ -295,4 +317,5 @@ void rd_shade(const rd_lighting* l, const rd_shade_point* points, uint32_t count
         add_lights(&r);
     }
     add_environment(&r);
+    count(&r, rd_now_ms() - start);
 }

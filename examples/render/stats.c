@@ -56,6 +56,27 @@ void rd_stats_error(rd_stats* s, const char* name, double value)
     add(s->errors, &s->error_count, name, value);
 }
 
+void rd_stats_lit(rd_stats* s, const char* material, double samples, double ns_each)
+{
+    add(s->lit, &s->lit_count, material, samples);
+    add(s->lit_ns, &s->lit_ns_count, material, ns_each);
+}
+
+static void print_lit(const rd_stats* s)
+{
+    if (s->lit_count > 0) {
+        printf("%-24s %10s %6s\n", "lighting of materials", "samples", "ns");
+    }
+    for (int i = 0; i < s->lit_count; ++i) {
+        printf("%-24s %10.0f", s->lit[i].name, s->lit[i].value);
+        if (isfinite(s->lit_ns[i].value)) {
+            printf(" %6.0f\n", s->lit_ns[i].value);
+        } else {
+            printf(" %6s\n", "-");
+        }
+    }
+}
+
 void rd_stats_print(const rd_stats* s)
 {
     double total = rd_now_ms() - s->begin_ms;
@@ -68,6 +89,7 @@ void rd_stats_print(const rd_stats* s)
     }
     printf("%-24s %10.1f %6.1f\n", "other", other, 100.0 * other / total);
     printf("%-24s %10.1f\n", "total", total);
+    print_lit(s);
     for (int i = 0; i < s->limit_count; ++i) {
         if (s->limits[i].value > 0) {
             printf("limit hit: %s: %.0f\n", s->limits[i].name, s->limits[i].value);
@@ -128,6 +150,8 @@ static bool write_all(const rd_stats* s, FILE* f)
     write_object(f, "counts", s->counts, s->count_count);
     write_object(f, "limits_hit", s->limits, s->limit_count);
     write_object(f, "errors", s->errors, s->error_count);
+    write_object(f, "lit_samples", s->lit, s->lit_count);
+    write_object(f, "lit_ns", s->lit_ns, s->lit_ns_count);
     fputs("\n}\n", f);
     return !ferror(f);
 }
