@@ -526,7 +526,8 @@ typedef struct hdrp_env_sun {
 
 /** Finds the brightest spot of an image and what it has over its surroundings: everything in a disc
  *  around the brightest texel that exceeds, channel by channel, the mean of the ring around it
- *  (up to twice the radius). Whether that is a sun is for the caller to say, by share.
+ *  (up to twice the radius; of all the rest in an image so small that the ring holds no texel, and
+ *  of the disc itself where there is no rest). Whether that is a sun is for the caller to say, by share.
  *  image       the picture
  *  radius_rad  [0,0.5]  of the disc; 0 means 0.035 (2 degrees, seven times the radius of the sun,
  *              for its glare), at least one and a half texels
@@ -1113,7 +1114,7 @@ static hdrp_i_image_disc hdrp_i_image_sum_disc(const hdrp_env_image* image, hdrp
 {
     hdrp_i_image_disc sum;
     float cos_inner = inner_rad > 0.0f ? hdrp_cos(inner_rad) : 2.0f;
-    float cos_outer = hdrp_cos(outer_rad);
+    float cos_outer = outer_rad < HDRP_PI ? hdrp_cos(outer_rad) : -2.0f;
     uint32_t row, x;
     int channel;
     memset(&sum, 0, sizeof sum);
@@ -1171,12 +1172,28 @@ static hdrp_v3 hdrp_i_image_disc_direction(const hdrp_i_image_disc* disc, hdrp_v
     return hdrp_v3_make((float)(v[0] / length), (float)(v[1] / length), (float)(v[2] / length));
 }
 
+/* What is around a disc: the ring up to twice its radius; where that holds no texel, all that is
+ * outside the disc; where that is nothing, the disc itself. */
+static hdrp_i_image_disc hdrp_i_image_surroundings(const hdrp_env_image* image, hdrp_v3 centre,
+                                                   float radius, double peak_nits)
+{
+    double none[3] = {0.0, 0.0, 0.0};
+    hdrp_i_image_disc ring =
+        hdrp_i_image_sum_disc(image, centre, radius, 2.0f * radius, none, peak_nits);
+    if (!(ring.solid_angle > 0.0)) {
+        ring = hdrp_i_image_sum_disc(image, centre, radius, HDRP_TWO_PI, none, peak_nits);
+    }
+    if (!(ring.solid_angle > 0.0)) {
+        ring = hdrp_i_image_sum_disc(image, centre, 0.0f, HDRP_TWO_PI, none, peak_nits);
+    }
+    return ring;
+}
+
 HDRP_API hdrp_result hdrp_env_find_sun(const hdrp_env_image* image, float radius_rad,
                                        hdrp_env_sun* sun)
 {
     hdrp_env_stats stats;
     hdrp_result r = hdrp_env_measure(image, &stats);
-    double none[3] = {0.0, 0.0, 0.0};
     double background[3];
     float radius, lux[3];
     hdrp_v3 centre;
@@ -1195,11 +1212,9 @@ HDRP_API hdrp_result hdrp_env_find_sun(const hdrp_env_image* image, float radius
     centre = hdrp_i_image_texel_direction(image, stats.peak_row, stats.peak_column);
     /* Twice: around the brightest texel, then around the middle of what was found there. */
     for (pass = 0; pass < 2; ++pass) {
-        hdrp_i_image_disc ring =
-            hdrp_i_image_sum_disc(image, centre, radius, 2.0f * radius, none, stats.peak_nits);
+        hdrp_i_image_disc ring = hdrp_i_image_surroundings(image, centre, radius, stats.peak_nits);
         for (channel = 0; channel < 3; ++channel) {
-            background[channel] =
-                ring.solid_angle > 0.0 ? ring.flux[channel] / ring.solid_angle : 0.0;
+            background[channel] = ring.flux[channel] / ring.solid_angle;
         }
         disc = hdrp_i_image_sum_disc(image, centre, 0.0f, radius, background, stats.peak_nits);
         sun->centre = centre;

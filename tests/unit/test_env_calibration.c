@@ -263,6 +263,41 @@ static void an_even_sky_has_no_sun(void** state)
     free(image.texels);
 }
 
+/* Sizes at which the ring around the disc holds no texel, or nothing is outside the disc. */
+static void an_even_sky_of_any_size_keeps_its_light(void** state)
+{
+    (void)state;
+    for (uint32_t i = 0; i < 2u * 9u * 9u; ++i) {
+        uint32_t w = i / 2u % 9u + 1u, h = i / 18u + 1u;
+        hdrp_env_image image = test_image((hdrp_env_image_kind)(i % 2u), w, h, 0.1f);
+        hdrp_env_stats stats = {0};
+        hdrp_env_sun sun = {0};
+        if (image.kind == HDRP_ENV_LATLONG || w == h) {
+            assert_int_equal(hdrp_env_find_sun(&image, 0.0f, &sun), HDRP_OK);
+            assert_true(sun.share < 1e-6f && hdrp_luminance(sun.illuminance_lux) < 1e-6f);
+            assert_int_equal(hdrp_env_remove_sun(&image, &sun), HDRP_OK);
+            assert_int_equal(hdrp_env_measure(&image, &stats), HDRP_OK);
+            test_near(stats.illuminance_lux / (0.1 * TEST_PI), 1.0, 1e-6);
+        }
+        free(image.texels);
+    }
+}
+
+/* 4 by 2: the disc is one texel of 45 degrees latitude, and no other centre is near enough. */
+static void without_a_ring_the_rest_of_the_image_is_the_background(void** state)
+{
+    (void)state;
+    hdrp_env_image image = test_image(HDRP_ENV_LATLONG, 4u, 2u, 1.0f);
+    hdrp_env_sun sun = {0};
+    image.texels[3] = image.texels[4] = image.texels[5] = 9.0f;
+    assert_int_equal(hdrp_env_find_sun(&image, 0.0f, &sun), HDRP_OK);
+    test_near_v3(sun.background_nits, 1.0, 1.0, 1.0, 1e-6);
+    test_near((double)sun.share, 0.5, 1e-6); /* 8 nits of one texel in 8, of 2 on average */
+    assert_int_equal(hdrp_env_remove_sun(&image, &sun), HDRP_OK);
+    test_near((double)image.texels[4], 1.0, 1e-6);
+    free(image.texels);
+}
+
 static void the_smallest_images_have_a_sun_or_none(void** state)
 {
     (void)state;
@@ -291,6 +326,8 @@ int main(void)
         cmocka_unit_test(the_sun_is_found_and_removed),
         cmocka_unit_test(dark_texels_near_the_sun_stay),
         cmocka_unit_test(an_even_sky_has_no_sun),
+        cmocka_unit_test(an_even_sky_of_any_size_keeps_its_light),
+        cmocka_unit_test(without_a_ring_the_rest_of_the_image_is_the_background),
         cmocka_unit_test(the_smallest_images_have_a_sun_or_none),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
