@@ -249,6 +249,23 @@ static void dark_texels_near_the_sun_stay(void** state)
     free(image.texels);
 }
 
+/* One texel at the peak, one at 0.55 of it, one at 0.45, which is not part of the disc of light. */
+static void the_solid_angle_of_a_sun_ends_at_half_its_peak(void** state)
+{
+    (void)state;
+    hdrp_env_image image = test_image(HDRP_ENV_LATLONG, 180u, 90u, 1.0f);
+    hdrp_env_sun sun = {0};
+    for (uint32_t i = 0; i < 3u; ++i) {
+        float* texel = image.texels + 3u * (180u * 30u + 90u + i);
+        texel[0] = texel[1] = texel[2] = i == 0u ? 1000.0f : i == 1u ? 550.0f : 450.0f;
+    }
+    assert_int_equal(hdrp_env_find_sun(&image, 0.2f, &sun), HDRP_OK);
+    test_near((double)sun.solid_angle_sr /
+                  (2.0 * (double)hdrp_env_latlong_solid_angle(30u, 180u, 90u)),
+              1.0, 1e-6);
+    free(image.texels);
+}
+
 static void an_even_sky_has_no_sun(void** state)
 {
     (void)state;
@@ -325,6 +342,7 @@ int main(void)
         cmocka_unit_test(errors_leave_results_alone),
         cmocka_unit_test(the_sun_is_found_and_removed),
         cmocka_unit_test(dark_texels_near_the_sun_stay),
+        cmocka_unit_test(the_solid_angle_of_a_sun_ends_at_half_its_peak),
         cmocka_unit_test(an_even_sky_has_no_sun),
         cmocka_unit_test(an_even_sky_of_any_size_keeps_its_light),
         cmocka_unit_test(without_a_ring_the_rest_of_the_image_is_the_background),
