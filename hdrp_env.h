@@ -221,8 +221,8 @@ HDRP_API size_t hdrp_env_memory_size(const hdrp_env_desc* desc);
  *  memory        block of the caller, aligned to HDRP_MEMORY_ALIGNMENT; it must outlive env
  *  memory_bytes  size of the block, at least hdrp_env_memory_size(desc)
  *  returns       HDRP_OK
- *  errors        HDRP_ERROR_NULL_POINTER, HDRP_ERROR_BAD_ARGUMENT, HDRP_ERROR_MEMORY_TOO_SMALL,
- *                HDRP_ERROR_MEMORY_ALIGNMENT */
+ *  errors        HDRP_ERROR_NULL_POINTER, HDRP_ERROR_BAD_ARGUMENT, HDRP_ERROR_TOO_LARGE for the
+ *                target, HDRP_ERROR_MEMORY_TOO_SMALL, HDRP_ERROR_MEMORY_ALIGNMENT */
 HDRP_API hdrp_result hdrp_env_init(hdrp_env* env, const hdrp_env_desc* desc, void* memory,
                                    size_t memory_bytes);
 

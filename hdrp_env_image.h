@@ -395,8 +395,9 @@ HDRP_API hdrp_v3 hdrp_env_image_radiance(const hdrp_env_image* image, hdrp_v3 di
 
 /* What hdrp_env_sanitize does. Zero is the default. */
 typedef struct hdrp_env_sanitize_desc {
-    float infinite_as; /* [0,1e20] value of an infinite channel; default 65504, the largest half:
-                          an infinity is what a half becomes that was too small for its sun */
+    float infinite_as; /* [0,1e20] value of an infinite channel, at most largest; default 65504, the
+                          largest half: an infinity is what a half becomes that was too small for
+                          its sun */
     float largest;     /* [0,1e20] value that no channel exceeds; default 1e12 */
 } hdrp_env_sanitize_desc;
 
@@ -409,7 +410,7 @@ typedef struct hdrp_env_sanitize_counts {
 } hdrp_env_sanitize_counts;
 
 /** Replaces what is no radiance, in place. Works on values as stored, before nits_per_unit.
- *  Channel by channel: infinity becomes desc->infinite_as, what is below 0 becomes 0, what is above
+ *  Channel by channel: infinity becomes desc->infinite_as or desc->largest, the smaller, what is below 0 becomes 0, what is above
  *  desc->largest becomes that, and NaN becomes the linear interpolation of the nearest other values
  *  to its left and right in the row (around the border of a latitude-longitude image), 0 if there
  *  are none.
@@ -450,6 +451,7 @@ typedef struct hdrp_env_row {
     double peak_nits;          /* largest luminance */
     uint32_t peak_column;      /* where, the leftmost */
     uint32_t invalid_texels;   /* negative or not finite; counted as black */
+    uint32_t limited_texels;   /* with a channel above 1e20 nits, counted as 1e20 */
 } hdrp_env_row;
 
 /* What an image emits. Luminance weighs the channels as Rec.709 does. */
@@ -462,6 +464,8 @@ typedef struct hdrp_env_stats {
     uint32_t peak_row; /* where, the uppermost */
     uint32_t peak_column;
     uint64_t invalid_texels; /* negative or not finite; counted as black */
+    uint64_t limited_texels; /* with a channel above 1e20 nits, counted as 1e20: the sums above
+                                say too little */
 } hdrp_env_stats;
 
 /** Sums of some rows of an image, for hdrp_env_stats_from_rows.
@@ -506,8 +510,8 @@ HDRP_API hdrp_result hdrp_env_measure(const hdrp_env_image* image, hdrp_env_stat
  *  multiplier  result: multiply nits_per_unit (1 where it is 0) or every texel by it
  *  returns     HDRP_OK
  *  errors      HDRP_ERROR_NULL_POINTER; HDRP_ERROR_BAD_ARGUMENT where wanted_lux is not in its
- *              range, the upper hemisphere is black, or the image has invalid texels, which
- *              hdrp_env_sanitize replaces
+ *              range, the upper hemisphere is black, the multiplier would not be in [1e-30,1e12],
+ *              or the image has invalid texels, which hdrp_env_sanitize replaces, or limited ones
  *  source      Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
  *              Definition Render Pipeline", slide on HDRI */
 HDRP_API hdrp_result hdrp_env_lux_multiplier(const hdrp_env_stats* stats, double wanted_lux,
@@ -534,7 +538,7 @@ typedef struct hdrp_env_sun {
  *  sun         result
  *  returns     HDRP_OK; for an image without contrast a sun without light
  *  errors      HDRP_ERROR_NULL_POINTER; HDRP_ERROR_BAD_ARGUMENT where image or radius is out of
- *              range or the image has texels that hdrp_env_sanitize would replace */
+ *              range or the image has invalid or limited texels, see hdrp_env_stats */
 HDRP_API hdrp_result hdrp_env_find_sun(const hdrp_env_image* image, float radius_rad,
                                        hdrp_env_sun* sun);
 
@@ -577,7 +581,8 @@ HDRP_API size_t hdrp_env_sampler_memory_size(const hdrp_env_image* image);
  *  memory        block of the caller, aligned to HDRP_MEMORY_ALIGNMENT; it must outlive sampler
  *  memory_bytes  size of the block, at least hdrp_env_sampler_memory_size(image)
  *  returns       HDRP_OK
- *  errors        HDRP_ERROR_NULL_POINTER, HDRP_ERROR_BAD_ARGUMENT, HDRP_ERROR_MEMORY_TOO_SMALL,
+ *  errors        HDRP_ERROR_NULL_POINTER, those of hdrp_env_image_check, HDRP_ERROR_TOO_LARGE where
+ *                hdrp_env_sampler_memory_size is 0, HDRP_ERROR_MEMORY_TOO_SMALL,
  *                HDRP_ERROR_MEMORY_ALIGNMENT */
 HDRP_API hdrp_result hdrp_env_sampler_init(hdrp_env_sampler* sampler, const hdrp_env_image* image,
                                            void* memory, size_t memory_bytes);
@@ -998,6 +1003,7 @@ static void hdrp_i_image_measure_row(const hdrp_env_image* image, uint32_t row,
             sum.invalid_texels += 1u;
             continue;
         }
+        sum.limited_texels += hdrp_max(hdrp_max(c[0], c[1]), c[2]) * scale > HDRP_I_IMAGE_NITS_MAX;
         for (channel = 0; channel < 3; ++channel) {
             nits[channel] = (double)hdrp_min(c[channel] * scale, HDRP_I_IMAGE_NITS_MAX);
             sum.illuminance_lux[channel] += cosine_weight * nits[channel];
@@ -1038,6 +1044,7 @@ static void hdrp_i_image_add_row(hdrp_env_stats* stats, const hdrp_env_row* row,
         stats->peak_column = row->peak_column;
     }
     stats->invalid_texels += row->invalid_texels;
+    stats->limited_texels += row->limited_texels;
     stats->illuminance_lux = hdrp_i_image_luminance(stats->illuminance_lux_rgb);
     stats->average_nits = hdrp_i_image_luminance(stats->average_nits_rgb);
 }
@@ -1082,7 +1089,8 @@ HDRP_API hdrp_result hdrp_env_lux_multiplier(const hdrp_env_stats* stats, double
     }
     k = wanted_lux / stats->illuminance_lux;
     if (!(wanted_lux > 0.0 && wanted_lux <= 1e12) || stats->invalid_texels != 0u ||
-        !(stats->illuminance_lux > 0.0) || !(k <= 1e12) || !(k >= 1e-30)) {
+        stats->limited_texels != 0u || !(stats->illuminance_lux > 0.0) || !(k <= 1e12) ||
+        !(k >= 1e-30)) {
         return HDRP_ERROR_BAD_ARGUMENT;
     }
     *multiplier = (float)k;
@@ -1202,7 +1210,8 @@ HDRP_API hdrp_result hdrp_env_find_sun(const hdrp_env_image* image, float radius
     if (r != HDRP_OK || !sun) {
         return r != HDRP_OK ? r : HDRP_ERROR_NULL_POINTER;
     }
-    if (!(radius_rad >= 0.0f && radius_rad <= 0.5f) || stats.invalid_texels != 0u) {
+    if (!(radius_rad >= 0.0f && radius_rad <= 0.5f) || stats.invalid_texels != 0u ||
+        stats.limited_texels != 0u) {
         return HDRP_ERROR_BAD_ARGUMENT;
     }
     radius =

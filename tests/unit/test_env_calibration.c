@@ -136,6 +136,44 @@ static void no_multiplier_for_black_invalid_or_nonsense(void** state)
     free(image.texels);
 }
 
+/* Above 1e20 nits a texel counts as that: a calibration by such sums would be wrong. */
+static void texels_too_bright_to_measure_are_counted_and_not_calibrated(void** state)
+{
+    (void)state;
+    for (int kind = 0; kind < 2; ++kind) {
+        hdrp_env_image image = test_image((hdrp_env_image_kind)kind, 4u, 4u, 1e20f);
+        uint32_t rows = hdrp_env_image_rows(&image);
+        hdrp_env_stats stats = {0}, split = {0};
+        hdrp_env_row record[24];
+        hdrp_env_sun sun;
+        float multiplier = 7.0f;
+        assert_int_equal(hdrp_env_measure(&image, &stats), HDRP_OK);
+        assert_int_equal(stats.limited_texels, 0);
+        assert_int_equal(hdrp_env_lux_multiplier(&stats, 1e5, &multiplier), HDRP_OK);
+        image.nits_per_unit = multiplier;
+        assert_int_equal(hdrp_env_measure(&image, &stats), HDRP_OK);
+        test_near(stats.illuminance_lux / 1e5, 1.0, 1e-6);
+        multiplier = 7.0f;
+        image.nits_per_unit = 1.0001f;
+        assert_int_equal(hdrp_env_measure(&image, &stats), HDRP_OK);
+        assert_int_equal(stats.limited_texels, 4u * rows);
+        assert_int_equal(hdrp_env_lux_multiplier(&stats, 1e5, &multiplier),
+                         HDRP_ERROR_BAD_ARGUMENT);
+        image.nits_per_unit = 1.0f;
+        image.texels[10] = 1e30f;
+        assert_int_equal(hdrp_env_measure(&image, &stats), HDRP_OK);
+        assert_true(stats.limited_texels == 1u && stats.invalid_texels == 0u);
+        assert_int_equal(hdrp_env_measure_rows(&image, 0u, rows, record), HDRP_OK);
+        assert_int_equal(hdrp_env_stats_from_rows(&image, record, &split), HDRP_OK);
+        assert_int_equal(split.limited_texels, 1);
+        assert_int_equal(hdrp_env_lux_multiplier(&stats, 1e5, &multiplier),
+                         HDRP_ERROR_BAD_ARGUMENT);
+        assert_int_equal(hdrp_env_find_sun(&image, 0.0f, &sun), HDRP_ERROR_BAD_ARGUMENT);
+        assert_true(multiplier == 7.0f);
+        free(image.texels);
+    }
+}
+
 static void errors_leave_results_alone(void** state)
 {
     (void)state;
@@ -339,6 +377,7 @@ int main(void)
         cmocka_unit_test(measuring_does_not_depend_on_the_split),
         cmocka_unit_test(the_multiplier_brings_the_wanted_illuminance),
         cmocka_unit_test(no_multiplier_for_black_invalid_or_nonsense),
+        cmocka_unit_test(texels_too_bright_to_measure_are_counted_and_not_calibrated),
         cmocka_unit_test(errors_leave_results_alone),
         cmocka_unit_test(the_sun_is_found_and_removed),
         cmocka_unit_test(dark_texels_near_the_sun_stay),
