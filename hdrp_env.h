@@ -228,13 +228,13 @@ HDRP_API hdrp_result hdrp_env_init(hdrp_env* env, const hdrp_env_desc* desc, voi
 
 /** First step: level 0 of the radiance cube from an image, by the areas that texels of both share.
  *  env        from hdrp_env_init
- *  image      the picture
+ *  image      the picture; not level 0 of env itself, which is written
  *  first_row  [0,24576]  of the 6 * radiance.size rows of the cube
  *  row_count  [0,24576]  rows to write; a call costs a look at the part of the image that its face
  *             sees, so a quarter of a face is a good job, a single row is not
  *  returns    HDRP_OK
  *  errors     HDRP_ERROR_NULL_POINTER, those of hdrp_env_image_check, HDRP_ERROR_BAD_ARGUMENT for a
- *             bad range
+ *             bad range and for an image that overlaps level 0 of the radiance of env
  *  range      rows are independent
  *  error      <= 1e-4 relative, flux of any sky  @accuracy env_resample_flux
  *  note       piecewise constant in, piecewise constant out: a constant stays constant, no light is
@@ -302,7 +302,7 @@ HDRP_API hdrp_result hdrp_env_convolve_irradiance(hdrp_env* env, uint32_t first_
  *  env      from hdrp_env_init
  *  image    the picture
  *  returns  HDRP_OK
- *  errors   HDRP_ERROR_NULL_POINTER, those of hdrp_env_image_check */
+ *  errors   those of hdrp_env_resample */
 HDRP_API hdrp_result hdrp_env_bake(hdrp_env* env, const hdrp_env_image* image);
 
 /** Spherical harmonics of order 2 of the irradiance.
@@ -738,6 +738,16 @@ static void hdrp_i_env_splat_cube(const hdrp_i_env_target* target, const hdrp_en
     }
 }
 
+/* Whether the texels of an image and level 0 of the radiance share memory. */
+static int hdrp_i_env_overlaps(const hdrp_env* env, const hdrp_env_image* image)
+{
+    uint32_t n = env->radiance.size;
+    uintptr_t level = (uintptr_t)env->radiance.texels;
+    uintptr_t level_end = level + (size_t)6u * n * n * sizeof(hdrp_v4);
+    uintptr_t texels = (uintptr_t)image->texels;
+    return texels < level_end && level < (uintptr_t)(image->texels + hdrp_env_image_floats(image));
+}
+
 HDRP_API hdrp_result hdrp_env_resample(hdrp_env* env, const hdrp_env_image* image,
                                        uint32_t first_row, uint32_t row_count)
 {
@@ -747,7 +757,7 @@ HDRP_API hdrp_result hdrp_env_resample(hdrp_env* env, const hdrp_env_image* imag
         return r != HDRP_OK ? r : HDRP_ERROR_NULL_POINTER;
     }
     n = env->radiance.size;
-    if (first_row > 6u * n || row_count > 6u * n - first_row) {
+    if (first_row > 6u * n || row_count > 6u * n - first_row || hdrp_i_env_overlaps(env, image)) {
         return HDRP_ERROR_BAD_ARGUMENT;
     }
     for (row = first_row; row < first_row + row_count;) {

@@ -40,7 +40,8 @@
  *   mapping: latlong_from_direction direction_from_latlong cube_from_direction point_from_cube
  *       direction_from_cube cube_from_openexr
  *   texel weights: latlong_solid_angle latlong_cosine_weight cube_solid_angle cube_cosine_weight
- *   images: image_check image_rows image_texel image_radiance sanitize texels_from_openexr
+ *   images: image_check image_rows image_floats image_texel image_radiance sanitize
+ *       texels_from_openexr
  *   calibration: measure_rows stats_from_rows measure lux_multiplier find_sun remove_sun
  *   sampling: sampler_memory_size sampler_init sampler_build sampler_finish sampler_sample
  *       sampler_pdf
@@ -376,6 +377,12 @@ HDRP_API hdrp_result hdrp_env_image_check(const hdrp_env_image* image);
  *  edges    0 for a null pointer and for an image that the other functions refuse */
 HDRP_API uint32_t hdrp_env_image_rows(const hdrp_env_image* image);
 
+/** Floats between the first and the end of the last texel of an image: what it occupies in memory.
+ *  image    the picture
+ *  returns  count; the gaps that strides leave between texels count, those after the last do not
+ *  edges    0 for a null pointer and for an image that the other functions refuse */
+HDRP_API size_t hdrp_env_image_floats(const hdrp_env_image* image);
+
 /** Radiance of one texel.
  *  image    a picture that hdrp_env_image_check accepts
  *  row      [0,393215]  below hdrp_env_image_rows
@@ -410,10 +417,10 @@ typedef struct hdrp_env_sanitize_counts {
 } hdrp_env_sanitize_counts;
 
 /** Replaces what is no radiance, in place. Works on values as stored, before nits_per_unit.
- *  Channel by channel: infinity becomes desc->infinite_as or desc->largest, the smaller, what is below 0 becomes 0, what is above
- *  desc->largest becomes that, and NaN becomes the linear interpolation of the nearest other values
- *  to its left and right in the row (around the border of a latitude-longitude image), 0 if there
- *  are none.
+ *  Channel by channel: infinity becomes desc->infinite_as or desc->largest, whichever is smaller,
+ *  what is below 0 becomes 0, what is above desc->largest becomes that, and NaN becomes the linear
+ *  interpolation of the nearest other values to its left and right in the row (around the border of
+ *  a latitude-longitude image), 0 if there are none.
  *  image      the picture; its texels are written
  *  desc       what to write; NULL for the defaults
  *  first_row  [0,393216]  first row to treat
@@ -531,7 +538,8 @@ typedef struct hdrp_env_sun {
 /** Finds the brightest spot of an image and what it has over its surroundings: everything in a disc
  *  around the brightest texel that exceeds, channel by channel, the mean of the ring around it
  *  (up to twice the radius; of all the rest in an image so small that the ring holds no texel, and
- *  of the disc itself where there is no rest). Whether that is a sun is for the caller to say, by share.
+ *  of the disc itself where there is no rest). Whether that is a sun is for the caller to say, by
+ *  share.
  *  image       the picture
  *  radius_rad  [0,0.5]  of the disc; 0 means 0.035 (2 degrees, seven times the radius of the sun,
  *              for its glare), at least one and a half texels
@@ -706,6 +714,17 @@ static float* hdrp_i_image_at(const hdrp_env_image* image, uint32_t face, uint32
 static float* hdrp_i_image_stored(const hdrp_env_image* image, uint32_t row, uint32_t x)
 {
     return hdrp_i_image_at(image, row / image->height, row % image->height, x);
+}
+
+HDRP_API size_t hdrp_env_image_floats(const hdrp_env_image* image)
+{
+    uint32_t rows = hdrp_env_image_rows(image);
+    const float* last;
+    if (rows == 0u) {
+        return 0u;
+    }
+    last = hdrp_i_image_stored(image, rows - 1u, image->width - 1u);
+    return (size_t)(last - image->texels) + 3u;
 }
 
 static float hdrp_i_image_scale(const hdrp_env_image* image)

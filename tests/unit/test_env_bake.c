@@ -356,6 +356,62 @@ static void bad_ranges_are_refused_and_write_nothing(void** state)
     free(image.texels);
 }
 
+/* Resampling begins with clearing what it writes. */
+static void an_environment_is_not_resampled_from_itself(void** state)
+{
+    (void)state;
+    hdrp_env_image image = test_random_image(HDRP_ENV_LATLONG, 16u, 8u);
+    hdrp_env_desc desc = make_desc(8u, 8u, 2u);
+    size_t bytes = hdrp_env_memory_size(&desc), level = 6u * 64u * sizeof(hdrp_v4);
+    void* other;
+    unsigned char* before = malloc(bytes);
+    char* block = aligned_alloc(HDRP_MEMORY_ALIGNMENT, (level + bytes + 15u) / 16u * 16u);
+    char* memory = block + level;
+    hdrp_env env, copy = make_env(desc, &other);
+    assert_true(before && block);
+    assert_int_equal(hdrp_env_init(&env, &desc, memory, bytes), HDRP_OK);
+    assert_int_equal(hdrp_env_bake(&env, &image), HDRP_OK);
+    hdrp_env_image own = hdrp_env_cube_image(&env.radiance, 0u);
+    memcpy(before, memory, bytes);
+    assert_int_equal(hdrp_env_bake(&env, &own), HDRP_ERROR_BAD_ARGUMENT);
+    assert_int_equal(hdrp_env_resample(&env, &own, 7u, 1u), HDRP_ERROR_BAD_ARGUMENT);
+    own.texels += (size_t)4u * (6u * 64u - 1u); /* its first texel is the last of the level */
+    assert_int_equal(hdrp_env_bake(&env, &own), HDRP_ERROR_BAD_ARGUMENT);
+    own.texels = (float*)(void*)block + 4; /* and its last the first */
+    assert_int_equal(hdrp_env_bake(&env, &own), HDRP_ERROR_BAD_ARGUMENT);
+    assert_memory_equal(before, memory, bytes);
+    /* Other levels and other cubes are read before they are written. */
+    own = hdrp_env_cube_image(&env.radiance, 1u);
+    assert_int_equal(hdrp_env_bake(&copy, &own), HDRP_OK);
+    assert_int_equal(hdrp_env_bake(&env, &own), HDRP_OK);
+    assert_memory_equal(env.radiance.texels, copy.radiance.texels, bytes);
+    free(before);
+    free(block);
+    free(other);
+    free(image.texels);
+}
+
+/* The series in the spread of a part has a negative mean where the part is wider than the lobe. */
+static void a_lobe_narrower_than_a_texel_stays_positive(void** state)
+{
+    (void)state;
+    hdrp_env_desc desc = make_desc(8u, 8u, 2u);
+    void* memory;
+    hdrp_env env = make_env(desc, &memory);
+    for (int i = 1; i <= 40; ++i) {
+        float alpha = 0.005f * (float)i;
+        hdrp_i_env_lobe lobe = hdrp_i_env_lobe_make(&env, alpha);
+        hdrp_env_spread part = {{0.0f, 0.99f, 0.0f}, 0.005f, 0.0f, 0.005f, 0.0f, 0.0f, 0.0f};
+        lobe.axis = hdrp_v3_make(0.0f, 1.0f, 0.0f);
+        /* Never above the peak, at least a third of it at the distance of the part. */
+        double peak = 1.0 / pow(4.0 * (double)alpha * (double)alpha, 2.0);
+        double there = 1.0 / pow(1e-4 + 4.0 * (double)alpha * (double)alpha, 2.0);
+        double value = (double)hdrp_i_env_kernel(&lobe, &part).value;
+        assert_true(value > there / 3.0 && value < peak);
+    }
+    free(memory);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -370,6 +426,8 @@ int main(void)
         cmocka_unit_test(windowing_keeps_a_lone_sun_positive),
         cmocka_unit_test(bad_descriptions_and_blocks_are_refused),
         cmocka_unit_test(bad_ranges_are_refused_and_write_nothing),
+        cmocka_unit_test(an_environment_is_not_resampled_from_itself),
+        cmocka_unit_test(a_lobe_narrower_than_a_texel_stays_positive),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

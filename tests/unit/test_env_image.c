@@ -11,6 +11,8 @@ static void an_image_that_cannot_be_read_is_refused(void** state)
     assert_int_equal(hdrp_env_image_rows(&good), 12);
     assert_int_equal(hdrp_env_image_check(NULL), HDRP_ERROR_NULL_POINTER);
     assert_int_equal(hdrp_env_image_rows(NULL), 0);
+    assert_int_equal(hdrp_env_image_floats(&good), 6 * 2 * 2 * 3);
+    assert_int_equal(hdrp_env_image_floats(NULL), 0);
     for (int i = 0; i < 12; ++i) {
         bad = good;
         bad.texels = i == 0 ? NULL : good.texels;
@@ -24,6 +26,7 @@ static void an_image_that_cannot_be_read_is_refused(void** state)
         assert_int_equal(hdrp_env_image_check(&bad),
                          i == 0 ? HDRP_ERROR_NULL_POINTER : HDRP_ERROR_BAD_ARGUMENT);
         assert_int_equal(hdrp_env_image_rows(&bad), 0);
+        assert_int_equal(hdrp_env_image_floats(&bad), 0);
     }
     bad = good;
     bad.row_stride = (size_t)-1 / 8u;
@@ -42,6 +45,7 @@ static void strides_change_where_texels_are_and_nothing_else(void** state)
     wide.row_stride = 23u;
     wide.face_stride = 117u;
     wide.texels = malloc(sizeof(float) * 6u * 117u);
+    assert_int_equal(hdrp_env_image_floats(&wide), 5u * 117u + 4u * 23u + 4u * 4u + 3u);
     for (uint32_t i = 0; i < 6u * 117u; ++i) {
         wide.texels[i] = NAN;
     }
