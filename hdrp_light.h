@@ -81,14 +81,21 @@
 #define HDRP_LIGHT_CAMERA_MIN 1e-6f
 #define HDRP_LIGHT_CAMERA_MAX 1e6f
 
-/* The sine of x in [0, pi/2], within 1.3e-7 of itself however small: Vulkan devices promise the
- * built-in an absolute error of 2^-11 only. The coefficients are minimax in relative error. */
-HDRP_FN float hdrp_i_light_sin(float x)
+/* sin(x share) / share for x share in [0, pi/2], within 1.3e-7 of itself however small: Vulkan
+ * devices promise the built-in an absolute error of 2^-11 only. A normal x stays normal, which a
+ * share of it might not. The coefficients are minimax in relative error. */
+HDRP_FN float hdrp_i_light_sin_of_share(float x, float share)
 {
-    float y = x * x;
+    float y = hdrp_sq(share * x);
     float p = -1.98096029e-4f + y * 2.60578059e-6f;
     p = y * (-1.66666596e-1f + y * (8.33306625e-3f + y * p));
     return x + x * p;
+}
+
+/* The sine of x in [0, pi/2], likewise. */
+HDRP_FN float hdrp_i_light_sin(float x)
+{
+    return hdrp_i_light_sin_of_share(x, 1.0f);
 }
 
 /* The cosine of x in [0, pi/2], likewise. The second constant is pi/2 minus the first. */
@@ -103,6 +110,31 @@ HDRP_FN float hdrp_i_light_ratio(float a, float b)
     return a > 0.0f ? hdrp_min(a / b, HDRP_FLT_MAX) : 0.0f;
 }
 
+/* a over the area of a circle of diameter d, limited likewise. The product d (pi/4 d) would
+ * underflow for small circles; in this order neither quotient overflows unless the result does. */
+HDRP_FN float hdrp_i_light_over_circle(float a, float d)
+{
+    return hdrp_i_light_ratio(a / d, 0.25f * HDRP_PI * d);
+}
+
+/* a times that area, at most FLT_MAX. Its inverse, in the opposite order. */
+HDRP_FN float hdrp_i_light_times_circle(float a, float d)
+{
+    return hdrp_min(a * (0.25f * HDRP_PI * d) * d, HDRP_FLT_MAX);
+}
+
+/* The circle as large as a cone's cap of the unit sphere, 4 pi sin^2(full / 4): its diameter. */
+HDRP_FN float hdrp_i_light_cone_diameter(float full_angle_rad)
+{
+    return hdrp_i_light_sin_of_share(hdrp_clamp(full_angle_rad, 0.0f, HDRP_TWO_PI), 0.25f);
+}
+
+/* The circle as large as a sky disc's projection on what faces it, pi sin^2(full / 2). */
+HDRP_FN float hdrp_i_light_sky_diameter(float full_angle_rad)
+{
+    return hdrp_i_light_sin_of_share(hdrp_clamp(full_angle_rad, 0.0f, HDRP_PI), 0.5f);
+}
+
 /* A width or radius as the area light functions read it. */
 HDRP_FN float hdrp_i_light_size(float size_m)
 {
@@ -110,7 +142,8 @@ HDRP_FN float hdrp_i_light_size(float size_m)
 }
 
 /* >>photometric units
- * Point-like lights: luminous intensity [cd] from luminous flux [lm] and back. */
+ * Point-like lights: luminous intensity [cd] from luminous flux [lm] and back. The relative errors
+ * of this section hold where arguments and result are normal numbers or 0. */
 
 /** Luminous intensity of a point light of a given flux.
  *  lumen    [0,FLT_MAX]  luminous flux
@@ -172,8 +205,7 @@ HDRP_FN float hdrp_light_lumen_from_candela_spot_occluder(float candela)
  *                  6 % at 0.1 degrees and everything at 0.02 */
 HDRP_FN float hdrp_light_solid_angle_cone(float full_angle_rad)
 {
-    float s = hdrp_i_light_sin(0.25f * hdrp_clamp(full_angle_rad, 0.0f, HDRP_TWO_PI));
-    return 4.0f * HDRP_PI * s * s;
+    return hdrp_i_light_times_circle(1.0f, hdrp_i_light_cone_diameter(full_angle_rad));
 }
 
 /** Luminous intensity of a spot whose reflector gathers the whole flux into a cone of constant
@@ -183,15 +215,13 @@ HDRP_FN float hdrp_light_solid_angle_cone(float full_angle_rad)
  *  returns         [0,FLT_MAX]      cd inside the cone
  *  edges           FLT_MAX where the result would be larger, as at angle 0; 0 for no flux; an angle
  *                  outside or NaN counts as the nearer end or 0
- *  error           <= 3.9e-7 relative against quadrature  @accuracy light_candela_spot_reflector
+ *  error           <= 3.5e-7 relative against quadrature  @accuracy light_candela_spot_reflector
  *  source          Lagarde and de Rousiers 2014, "Moving Frostbite to Physically Based Rendering",
  *                  section on light units
- *  note            dividing twice reaches angles whose square underflows; for a cone with a soft
- *                  edge see hdrp_light_candela_from_lumen_spot */
+ *  note            for a cone with a soft edge see hdrp_light_candela_from_lumen_spot */
 HDRP_FN float hdrp_light_candela_from_lumen_spot_reflector(float lumen, float full_angle_rad)
 {
-    float s = hdrp_i_light_sin(0.25f * hdrp_clamp(full_angle_rad, 0.0f, HDRP_TWO_PI));
-    return hdrp_i_light_ratio(lumen / s * (0.25f * HDRP_INV_PI), s);
+    return hdrp_i_light_over_circle(lumen, hdrp_i_light_cone_diameter(full_angle_rad));
 }
 
 /** Flux of a cone of constant luminous intensity.
@@ -200,13 +230,12 @@ HDRP_FN float hdrp_light_candela_from_lumen_spot_reflector(float lumen, float fu
  *  returns         [0,FLT_MAX]      lm
  *  edges           FLT_MAX where the result would be larger; 0 at angle 0; an angle outside or NaN
  *                  counts as the nearer end or 0
- *  error           <= 3.2e-7 relative against quadrature  @accuracy light_lumen_spot_reflector
+ *  error           <= 3.4e-7 relative against quadrature  @accuracy light_lumen_spot_reflector
  *  source          Lagarde and de Rousiers 2014, "Moving Frostbite to Physically Based Rendering",
  *                  section on light units */
 HDRP_FN float hdrp_light_lumen_from_candela_spot_reflector(float candela, float full_angle_rad)
 {
-    float s = hdrp_i_light_sin(0.25f * hdrp_clamp(full_angle_rad, 0.0f, HDRP_TWO_PI));
-    return hdrp_min(candela * s * (4.0f * HDRP_PI * s), HDRP_FLT_MAX);
+    return hdrp_i_light_times_circle(candela, hdrp_i_light_cone_diameter(full_angle_rad));
 }
 
 /** Solid angle of a rectangular pyramid with its apex on the axis.
@@ -231,21 +260,44 @@ HDRP_FN float hdrp_light_solid_angle_pyramid(float full_angle_x_rad, float full_
     return 4.0f * hdrp_atan2(sin_x * hdrp_i_light_sin(y), adjacent);
 }
 
+/* The sines of a pyramid's half angles, the smaller times 4: where their product is small it is the
+ * solid angle. One after the other they neither underflow nor overflow unless the result does. */
+struct hdrp_i_light_sides {
+    float larger;   /* [0,1] */
+    float smaller;  /* [0,4] */
+    float is_small; /* [0,1] 1 where the product is it: the next term is less than 1e-20 of it */
+};
+HDRP_TYPEDEF(hdrp_i_light_sides)
+
+HDRP_FN hdrp_i_light_sides hdrp_i_light_pyramid_sides(float full_angle_x_rad,
+                                                      float full_angle_y_rad)
+{
+    hdrp_i_light_sides s;
+    float x = hdrp_i_light_sin_of_share(hdrp_clamp(full_angle_x_rad, 0.0f, HDRP_PI), 0.5f);
+    float y = hdrp_i_light_sin_of_share(hdrp_clamp(full_angle_y_rad, 0.0f, HDRP_PI), 0.5f);
+    s.larger = 0.5f * hdrp_max(x, y);
+    s.smaller = 2.0f * hdrp_min(x, y);
+    s.is_small = s.larger * s.smaller < 1e-10f ? 1.0f : 0.0f;
+    return s;
+}
+
 /** Luminous intensity of a pyramid spot whose reflector gathers the whole flux inside its faces.
  *  lumen             [0,FLT_MAX]  luminous flux
  *  full_angle_x_rad  [0,HDRP_PI]  between the left and the right face
  *  full_angle_y_rad  [0,HDRP_PI]  between the lower and the upper face
  *  returns           [0,FLT_MAX]  cd inside the pyramid
  *  edges             FLT_MAX where the result would be larger, as at angle 0; 0 for no flux
- *  error             <= 3.1e-7 relative against quadrature  @accuracy light_candela_pyramid
+ *  error             <= 3.7e-7 relative against quadrature  @accuracy light_candela_pyramid
  *  source            Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
  *                    Definition Render Pipeline", slides on physical light units
  *  note              exact for hard edges; a soft edge takes light away */
 HDRP_FN float hdrp_light_candela_from_lumen_pyramid(float lumen, float full_angle_x_rad,
                                                     float full_angle_y_rad)
 {
-    return hdrp_i_light_ratio(lumen,
-                              hdrp_light_solid_angle_pyramid(full_angle_x_rad, full_angle_y_rad));
+    hdrp_i_light_sides s = hdrp_i_light_pyramid_sides(full_angle_x_rad, full_angle_y_rad);
+    float solid_angle = hdrp_light_solid_angle_pyramid(full_angle_x_rad, full_angle_y_rad);
+    float narrow = hdrp_i_light_ratio(lumen / s.larger, s.smaller);
+    return s.is_small > 0.0f ? narrow : hdrp_i_light_ratio(lumen, solid_angle);
 }
 
 /** Flux of a pyramid of constant luminous intensity.
@@ -254,13 +306,15 @@ HDRP_FN float hdrp_light_candela_from_lumen_pyramid(float lumen, float full_angl
  *  full_angle_y_rad  [0,HDRP_PI]  between the lower and the upper face
  *  returns           [0,3.2e38]   lm
  *  edges             0 where an angle is 0; overflows above the range of candela
- *  error             <= 2.9e-7 relative against quadrature  @accuracy light_lumen_pyramid
+ *  error             <= 3.6e-7 relative against quadrature  @accuracy light_lumen_pyramid
  *  source            Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
  *                    Definition Render Pipeline", slides on physical light units */
 HDRP_FN float hdrp_light_lumen_from_candela_pyramid(float candela, float full_angle_x_rad,
                                                     float full_angle_y_rad)
 {
-    return candela * hdrp_light_solid_angle_pyramid(full_angle_x_rad, full_angle_y_rad);
+    hdrp_i_light_sides s = hdrp_i_light_pyramid_sides(full_angle_x_rad, full_angle_y_rad);
+    float solid_angle = hdrp_light_solid_angle_pyramid(full_angle_x_rad, full_angle_y_rad);
+    return s.is_small > 0.0f ? candela * s.larger * s.smaller : candela * solid_angle;
 }
 
 /* Area lights: luminance [nits = cd/m^2] from luminous flux and back. Every point of the surface
@@ -526,8 +580,7 @@ HDRP_FN float hdrp_light_lux_sun_from_lux_ground(float lux, float elevation_rad)
  *  note                  a diameter of pi is a uniform sky: lux / pi */
 HDRP_FN float hdrp_light_nits_from_lux_sky_disc(float lux, float angular_diameter_rad)
 {
-    float s = hdrp_i_light_sin(0.5f * hdrp_clamp(angular_diameter_rad, 0.0f, HDRP_PI));
-    return hdrp_i_light_ratio(lux / s * HDRP_INV_PI, s);
+    return hdrp_i_light_over_circle(lux, hdrp_i_light_sky_diameter(angular_diameter_rad));
 }
 
 /** Illuminance of a surface that faces the centre of a disc in the sky, such as the sun's.
@@ -539,8 +592,7 @@ HDRP_FN float hdrp_light_nits_from_lux_sky_disc(float lux, float angular_diamete
  *  source                derived, see hdrp_light_nits_from_lux_sky_disc */
 HDRP_FN float hdrp_light_lux_from_nits_sky_disc(float nits, float angular_diameter_rad)
 {
-    float s = hdrp_i_light_sin(0.5f * hdrp_clamp(angular_diameter_rad, 0.0f, HDRP_PI));
-    return hdrp_min(nits * s * (HDRP_PI * s), HDRP_FLT_MAX);
+    return hdrp_i_light_times_circle(nits, hdrp_i_light_sky_diameter(angular_diameter_rad));
 }
 
 /* >>exposure
@@ -722,7 +774,7 @@ HDRP_FN float hdrp_light_falloff_gltf(float distance_sq, float inv_range_sq)
  *  edges    0 for equal directions, 2 for opposite ones
  *  error    <= 1.9e-7 absolute, as a share of the angle, against double  @accuracy light_versine
  *  source   |a - b|^2 = 2 - 2 cos
- *  note     1 - dot(a, b) is off by 4 % at 0.1 degrees, where this is off by 8e-5 */
+ *  note     1 - dot(a, b) is off by up to 10 % at 0.1 degrees, where this is off by 1e-4 */
 HDRP_FN float hdrp_light_versine(hdrp_v3 a, hdrp_v3 b)
 {
     hdrp_v3 d = hdrp_v3_sub(a, b);
@@ -921,8 +973,9 @@ HDRP_FN float hdrp_light_box_attenuation(hdrp_v3 place, float half_width_m, floa
  *                              w    size of the source, for soft shadows: radius [m] of a lamp,
  *                                   sphere or disc; angular diameter [rad] of a directional light
  *      80  half_angle          xyzw cos and sin of the half angle across x, then across y, of all
- *                              the light there is: what bounds need. A cone repeats its own, a
- *                              point light has -1 0 -1 0, parallel light 1 0 1 0
+ *                              the light there is: what bounds need. A cone repeats its own, which
+ *                              is rounded up; that of a pyramid is good to 3e-7 rad; a point light
+ *                              has -1 0 -1 0, parallel light 1 0 1 0
  *      96  edge_importance     x    cone: versine_outer; pyramid: scale_x; box: 1/m, 1 over border
  *                              y    cone: scale; pyramid: scale_y
  *                              z    0, reserved
@@ -1093,6 +1146,10 @@ HDRP_FN hdrp_light hdrp_light_point(hdrp_v3 position, hdrp_v3 color_candela, flo
     return hdrp_i_light_make(HDRP_LIGHT_TYPE_POINT, position, none, none, color_candela, range_m);
 }
 
+/* What a versine may be too small by, relative, and a direction, in radians. */
+#define HDRP_I_LIGHT_BOUND_VERSINE 1e-6f
+#define HDRP_I_LIGHT_BOUND_RAD     2e-7f
+
 /** A spot: a cone of light with a soft edge.
  *  position              any  m
  *  forward               any  direction in which it shines; any length
@@ -1114,7 +1171,11 @@ HDRP_FN hdrp_light hdrp_light_spot(hdrp_v3 position, hdrp_v3 forward, hdrp_v3 co
                                      color_candela, range_m);
     hdrp_light_cone_shape c =
         hdrp_light_cone_shape_make(inner_half_angle_rad, outer_half_angle_rad);
-    float versine = hdrp_min(c.versine_outer, 2.0f);
+    float outer = hdrp_min(c.versine_outer, 2.0f);
+    /* Directions and their versines are rounded: so much further out there may be light. */
+    float versine = hdrp_min(outer * (1.0f + HDRP_I_LIGHT_BOUND_VERSINE) +
+                                 HDRP_I_LIGHT_BOUND_RAD * hdrp_sqrt(outer * (2.0f - outer)),
+                             2.0f);
     float cosine = 1.0f - versine;
     float sine = hdrp_sqrt(versine * (2.0f - versine));
     r.half_angle = hdrp_v4_make(cosine, sine, cosine, sine);

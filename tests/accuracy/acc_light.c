@@ -72,6 +72,30 @@ static float angle(acc* a, int i, double smallest, float limit)
     return fminf(fmaxf(x, acc_float(smallest)), limit);
 }
 
+/* A normal number that everyday values, the whole range and its two ends share. */
+static float normal_float(acc* a, int i)
+{
+    double x = i % 4 == 0   ? acc_log_uniform(a, 1e-3, 1e6)
+               : i % 4 == 1 ? acc_log_uniform(a, (double)HDRP_FLT_MIN, (double)HDRP_FLT_MAX)
+               : i % 4 == 2 ? (double)HDRP_FLT_MAX * acc_uniform(a, 0.05, 1.0)
+                            : (double)HDRP_FLT_MIN * acc_uniform(a, 1.0, 20.0);
+    return fmaxf(acc_float(x), HDRP_FLT_MIN);
+}
+
+static bool is_normal(double x)
+{
+    return x >= (double)HDRP_FLT_MIN && x <= (double)HDRP_FLT_MAX;
+}
+
+/* One of two units and its factor to the other, such that both numbers are normal: any number that
+ * allows it, or one whose result is any. 0 where there is none. */
+static float unit_value(acc* a, int i, double factor)
+{
+    double x = (double)normal_float(a, i / 2);
+    x = i % 2 ? (double)acc_float(x / factor) : x;
+    return is_normal(x) && is_normal(x * factor) ? acc_float(x) : 0.0f;
+}
+
 static void candela_point_error(acc* a)
 {
     double sphere = cone_solid_angle(PI);
@@ -106,24 +130,17 @@ static void solid_angle_cone_error(acc* a)
     }
 }
 
-/* Every angle down to 1e-36 with a flux or intensity that leaves the other representable. */
 static void spot_reflector_errors(acc* a, bool to_candela)
 {
-    for (int i = 0; i < 100000; ++i) {
-        float full = angle(a, i, 1e-36, HDRP_TWO_PI);
+    for (int i = 0; i < 200000; ++i) {
+        float full = angle(a, i, (double)HDRP_FLT_MIN, HDRP_TWO_PI);
         double solid_angle = cone_solid_angle(0.5 * (double)full);
-        float candela = log_float(a, 1e-20, 1e36);
-        float lumen = acc_float((double)candela * solid_angle);
-        if (lumen < HDRP_FLT_MIN || lumen > HDRP_FLT_MAX) {
-            continue;
-        }
-        double error =
-            to_candela
-                ? acc_relative((double)hdrp_light_candela_from_lumen_spot_reflector(lumen, full),
-                               (double)lumen / solid_angle)
-                : acc_relative((double)hdrp_light_lumen_from_candela_spot_reflector(candela, full),
-                               (double)candela * solid_angle);
-        ACC_ADD(a, error, "%.9g rad, %.9g lm", (double)full, (double)lumen);
+        double factor = to_candela ? 1.0 / solid_angle : solid_angle;
+        float x = unit_value(a, i / 2, factor);
+        float y = to_candela ? hdrp_light_candela_from_lumen_spot_reflector(x, full)
+                             : hdrp_light_lumen_from_candela_spot_reflector(x, full);
+        ACC_ADD(a, acc_relative((double)y, (double)x * factor), "%.9g at %.9g rad", (double)x,
+                (double)full);
     }
 }
 
@@ -168,29 +185,30 @@ static void solid_angle_pyramid_error(acc* a)
     }
 }
 
+static void pyramid_errors(acc* a, bool to_candela)
+{
+    for (int i = 0; i < 20000; ++i) {
+        double least = i % 8 < 4 ? 1e-9 : (double)HDRP_FLT_MIN;
+        float fx = angle(a, i, least, HDRP_PI), fy = angle(a, i / 2, least, HDRP_PI);
+        double solid_angle = pyramid_solid_angle((double)fx, (double)fy);
+        double factor = to_candela ? 1.0 / solid_angle : solid_angle;
+        float x = unit_value(a, i / 4, factor);
+        x = to_candela ? x : fminf(x, 5e37f);
+        float y = to_candela ? hdrp_light_candela_from_lumen_pyramid(x, fx, fy)
+                             : hdrp_light_lumen_from_candela_pyramid(x, fx, fy);
+        ACC_ADD(a, acc_relative((double)y, (double)x * factor), "%.9g at %.9g x %.9g rad",
+                (double)x, (double)fx, (double)fy);
+    }
+}
+
 static void candela_pyramid_error(acc* a)
 {
-    for (int i = 0; i < 6000; ++i) {
-        float x = angle(a, i, 1e-9, HDRP_PI), y = angle(a, i / 2, 1e-9, HDRP_PI);
-        float lumen = log_float(a, 1e-3, 1e6);
-        double reference = (double)lumen / pyramid_solid_angle((double)x, (double)y);
-        ACC_ADD(a,
-                acc_relative((double)hdrp_light_candela_from_lumen_pyramid(lumen, x, y), reference),
-                "%.9g x %.9g rad", (double)x, (double)y);
-    }
+    pyramid_errors(a, true);
 }
 
 static void lumen_pyramid_error(acc* a)
 {
-    for (int i = 0; i < 6000; ++i) {
-        float x = angle(a, i, 1e-9, HDRP_PI), y = angle(a, i / 2, 1e-9, HDRP_PI);
-        float candela = log_float(a, 1e-3, 1e6);
-        double reference = (double)candela * pyramid_solid_angle((double)x, (double)y);
-        ACC_ADD(
-            a,
-            acc_relative((double)hdrp_light_lumen_from_candela_pyramid(candela, x, y), reference),
-            "%.9g x %.9g rad", (double)x, (double)y);
-    }
+    pyramid_errors(a, false);
 }
 
 /* Area lights: flux = luminance * area * the integral of cos over the hemisphere. */
@@ -391,30 +409,28 @@ static void exposure_standard_output_error(acc* a)
 
 /* Illuminance. */
 
-static void lux_candela_error(acc* a)
+static void inverse_square_errors(acc* a, bool to_lux)
 {
     double sphere = cone_solid_angle(PI);
     for (int i = 0; i < 50000; ++i) {
-        float d = log_float(a, 1e-15, 1e15), candela = log_float(a, 1e-6, 1e6);
+        float d = normal_float(a, i);
         double area = sphere * (double)d * (double)d;
-        ACC_ADD(a,
-                acc_relative((double)hdrp_light_lux_from_candela(candela, d),
-                             (double)candela * sphere / area),
-                "%.9g cd, %.9g m", (double)candela, (double)d);
+        double factor = to_lux ? sphere / area : area / sphere;
+        float x = unit_value(a, i / 4, factor);
+        float y = to_lux ? hdrp_light_lux_from_candela(x, d) : hdrp_light_candela_from_lux(x, d);
+        ACC_ADD(a, acc_relative((double)y, (double)x * factor), "%.9g at %.9g m", (double)x,
+                (double)d);
     }
+}
+
+static void lux_candela_error(acc* a)
+{
+    inverse_square_errors(a, true);
 }
 
 static void candela_lux_error(acc* a)
 {
-    double sphere = cone_solid_angle(PI);
-    for (int i = 0; i < 50000; ++i) {
-        float d = log_float(a, 1e-15, 1e15), lux = log_float(a, 1e-6, 1e6);
-        double area = sphere * (double)d * (double)d;
-        ACC_ADD(
-            a,
-            acc_relative((double)hdrp_light_candela_from_lux(lux, d), (double)lux * area / sphere),
-            "%.9g lux, %.9g m", (double)lux, (double)d);
-    }
+    inverse_square_errors(a, false);
 }
 
 /* The vertical component of the direction to the sun, from the tangent of half its elevation. */
@@ -427,36 +443,40 @@ static double sun_height(double elevation)
 static void lux_ground_error(acc* a)
 {
     for (int i = 0; i < 50000; ++i) {
-        float elevation = angle(a, i, 1e-12, HDRP_HALF_PI), lux = log_float(a, 1e-3, 1e6);
+        float elevation = angle(a, i, (double)HDRP_FLT_MIN, HDRP_HALF_PI);
+        double factor = sun_height((double)elevation);
+        float x = unit_value(a, i / 2, factor);
         ACC_ADD(a,
-                acc_relative((double)hdrp_light_lux_ground_from_lux_sun(lux, elevation),
-                             (double)lux * sun_height((double)elevation)),
-                "%.9g rad", (double)elevation);
+                acc_relative((double)hdrp_light_lux_ground_from_lux_sun(x, elevation),
+                             (double)x * factor),
+                "%.9g at %.9g rad", (double)x, (double)elevation);
     }
 }
 
 static void lux_sun_error(acc* a)
 {
     for (int i = 0; i < 50000; ++i) {
-        float elevation = angle(a, i, 1e-12, HDRP_HALF_PI), lux = log_float(a, 1e-3, 1e6);
+        float elevation = angle(a, i, (double)HDRP_FLT_MIN, HDRP_HALF_PI);
+        double factor = 1.0 / sun_height((double)elevation);
+        float x = unit_value(a, i / 2, factor);
         ACC_ADD(a,
-                acc_relative((double)hdrp_light_lux_sun_from_lux_ground(lux, elevation),
-                             (double)lux / sun_height((double)elevation)),
-                "%.9g rad", (double)elevation);
+                acc_relative((double)hdrp_light_lux_sun_from_lux_ground(x, elevation),
+                             (double)x * factor),
+                "%.9g at %.9g rad", (double)x, (double)elevation);
     }
 }
 
 static void sky_disc_errors(acc* a, bool to_nits)
 {
-    for (int i = 0; i < 50000; ++i) {
-        float diameter = angle(a, i, 1e-17, HDRP_PI), value = log_float(a, 1e-3, 1e3);
+    for (int i = 0; i < 100000; ++i) {
+        float diameter = angle(a, i, (double)HDRP_FLT_MIN, HDRP_PI);
         double share = integrate(ring_cos, NULL, 0.0, 0.5 * (double)diameter, 4);
-        double error =
-            to_nits ? acc_relative((double)hdrp_light_nits_from_lux_sky_disc(value, diameter),
-                                   (double)value / share)
-                    : acc_relative((double)hdrp_light_lux_from_nits_sky_disc(value, diameter),
-                                   (double)value * share);
-        ACC_ADD(a, error, "%.9g rad", (double)diameter);
+        double factor = to_nits ? 1.0 / share : share;
+        float x = unit_value(a, i / 2, factor);
+        float y = to_nits ? hdrp_light_nits_from_lux_sky_disc(x, diameter)
+                          : hdrp_light_lux_from_nits_sky_disc(x, diameter);
+        ACC_ADD(a, acc_relative((double)y, (double)x * factor), "%.9g at %.9g rad", (double)x,
+                (double)diameter);
     }
 }
 

@@ -160,8 +160,75 @@ static void a_box_projects_parallel_rays(void** state)
     hdrp_light_incident i = hdrp_light_eval(box, v3(2.0f, 3.0f, 0.3f));
     assert_true(i.illuminance.x == 300.0f && i.l.y == 1.0f && i.distance_m == 2.0f);
     assert_true(is_black(hdrp_light_eval(box, v3(1.0f, 3.0f, 1.5f)).illuminance));
-    assert_true(is_black(hdrp_light_eval(box, v3(1.0f, 5.5f, 0.0f)).illuminance));
+    i = hdrp_light_eval(box, v3(1.0f, 5.5f, 0.0f));
+    assert_true(is_black(i.illuminance) && i.distance_m == 0.0f); /* before the emitting face */
     assert_true(is_black(hdrp_light_eval(box, v3(1.0f, 0.5f, 0.0f)).illuminance));
+}
+
+/* A number in [0,1) of a fixed sequence (Steele et al. 2014, splitmix64). */
+static double test_random(uint64_t* state)
+{
+    uint64_t z = (*state += 0x9e3779b97f4a7c15u);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
+}
+
+static double angle_between(hdrp_v3 a, hdrp_v3 b)
+{
+    double ax = (double)a.x, ay = (double)a.y, az = (double)a.z;
+    double bx = (double)b.x, by = (double)b.y, bz = (double)b.z;
+    double x = ay * bz - az * by, y = az * bx - ax * bz, z = ax * by - ay * bx;
+    return atan2(sqrt(x * x + y * y + z * z), ax * bx + ay * by + az * bz);
+}
+
+/* A lit direction is within the half angle that the record states. */
+static void bounds_by_the_half_angle_hold_all_light(void** state)
+{
+    (void)state;
+    uint64_t random = 5u;
+    for (int i = 0; i < 200000; ++i) {
+        double outer = i % 2 ? exp(log(1e-5) + test_random(&random) * log(3.14159265 / 1e-5))
+                             : 3.14159274 - exp(log(1e-5) + test_random(&random) * log(1e4));
+        double inner = i % 4 < 2 ? outer : outer * test_random(&random);
+        double polar = acos(2.0 * test_random(&random) - 1.0);
+        hdrp_v3 f = at(v3(0.0f, 0.0f, 0.0f), polar, 2.0 * PI * test_random(&random), 1.0);
+        hdrp_light l = hdrp_light_spot(v3(0.0f, 0.0f, 0.0f), f, hdrp_v3_splat(1.0f),
+                                       HDRP_LIGHT_RANGE_INFINITE, (float)inner, (float)outer);
+        double bound = atan2((double)l.half_angle.y, (double)l.half_angle.x);
+        double angle = bound + (i % 8 ? exp(log(1e-9) + test_random(&random) * log(1e9)) : 0.0);
+        hdrp_basis b = hdrp_basis_from_normal(f);
+        hdrp_v3 p = hdrp_v3_add(hdrp_v3_scale(f, (float)cos(angle)),
+                                hdrp_v3_scale(b.tangent, (float)sin(angle)));
+        assert_true(bound >= (double)(float)outer - 1e-9);
+        assert_true(outer > 1.5 || bound < outer * (1.0 + 7e-5) + 3e-7);
+        if (angle_between(f, p) > bound) {
+            assert_true(is_black(hdrp_light_eval(l, p).illuminance));
+        }
+    }
+}
+
+static void a_pyramid_is_dark_beyond_its_half_angles(void** state)
+{
+    (void)state;
+    uint64_t random = 6u;
+    for (int i = 0; i < 200000; ++i) {
+        double polar = acos(2.0 * test_random(&random) - 1.0);
+        hdrp_v3 f = at(v3(0.0f, 0.0f, 0.0f), polar, 2.0 * PI * test_random(&random), 1.0);
+        float half = (float)exp(log(1e-5) + test_random(&random) * log(1.57 / 1e-5));
+        hdrp_light l =
+            hdrp_light_pyramid(v3(0.0f, 0.0f, 0.0f), f, v3(0.1f, 1.0f, 0.3f), hdrp_v3_splat(1.0f),
+                               HDRP_LIGHT_RANGE_INFINITE, half, half, (float)test_random(&random));
+        hdrp_v4 side = i % 2 ? l.right_half_width : l.up_half_height;
+        double bound = i % 2 ? atan2((double)l.half_angle.y, (double)l.half_angle.x)
+                             : atan2((double)l.half_angle.w, (double)l.half_angle.z);
+        double angle = bound + exp(log(3e-7) + test_random(&random) * log(1e6));
+        hdrp_v3 p = hdrp_v3_add(hdrp_v3_scale(f, (float)cos(angle)),
+                                hdrp_v3_scale(hdrp_v3_from_v4(side), (float)sin(angle)));
+        if (angle_between(f, p) > bound + 3e-7) {
+            assert_true(is_black(hdrp_light_eval(l, p).illuminance));
+        }
+    }
 }
 
 static void unknown_and_area_lights_are_dark(void** state)
@@ -306,6 +373,8 @@ int main(void)
         cmocka_unit_test(the_light_s_own_place_is_lit_from_behind_its_axis),
         cmocka_unit_test(the_sun_is_the_same_everywhere),
         cmocka_unit_test(a_box_projects_parallel_rays),
+        cmocka_unit_test(bounds_by_the_half_angle_hold_all_light),
+        cmocka_unit_test(a_pyramid_is_dark_beyond_its_half_angles),
         cmocka_unit_test(unknown_and_area_lights_are_dark),
         cmocka_unit_test(layers_link_lights_to_surfaces),
         cmocka_unit_test(a_place_or_range_that_is_no_number_makes_a_light_dark),

@@ -54,6 +54,27 @@ static void light_without_a_beam_saturates(void** state)
     assert_true(hdrp_light_lux_sun_from_lux_ground(1.0f, -0.5f) == HDRP_FLT_MAX);
 }
 
+/* Quotients and products on the way to a result may leave the range that the result is in. */
+static void units_do_not_leave_the_range_before_their_result_does(void** state)
+{
+    (void)state;
+    const double pi = 3.14159265358979323846;
+    expect_near(hdrp_light_candela_from_lumen_spot_reflector(2e38f, 1.0f),
+                2e38 / (4.0 * pi * pow(sin(0.25), 2.0)), 4e-7);
+    expect_near(hdrp_light_candela_from_lumen_spot_reflector(2.93e38f, 4.086f), 3.20531e37, 1e-5);
+    expect_near(hdrp_light_candela_from_lumen_spot_reflector(1.2e-38f, 1.0f),
+                (double)1.2e-38f / (4.0 * pi * pow(sin(0.25), 2.0)), 4e-7);
+    expect_near(hdrp_light_lumen_from_candela_spot_reflector(3.4e38f, 1.1f),
+                (double)3.4e38f * 4.0 * pi * pow(sin(0.275), 2.0), 4e-7);
+    expect_near(hdrp_light_nits_from_lux_sky_disc(2.9e38f, 2.0f),
+                2.9e38 / (pi * pow(sin(1.0), 2.0)), 4e-7);
+    /* A solid angle of 3e-42 sr is no normal number, and 1e-56 none at all. */
+    expect_near(hdrp_light_candela_from_lumen_pyramid(1e-3f, 4.2e-29f, 7.5e-14f),
+                (double)1e-3f / ((double)4.2e-29f * (double)7.5e-14f), 4e-7);
+    expect_near(hdrp_light_lumen_from_candela_pyramid(4e37f, 1e-28f, 1e-28f),
+                (double)4e37f * (double)1e-28f * (double)1e-28f, 4e-7);
+}
+
 static void a_pyramid_covers_what_geometry_says(void** state)
 {
     (void)state;
@@ -191,6 +212,7 @@ int main(void)
         cmocka_unit_test(a_narrow_reflector_keeps_its_digits),
         cmocka_unit_test(a_reflector_of_the_whole_sphere_is_a_point_light),
         cmocka_unit_test(light_without_a_beam_saturates),
+        cmocka_unit_test(units_do_not_leave_the_range_before_their_result_does),
         cmocka_unit_test(a_pyramid_covers_what_geometry_says),
         cmocka_unit_test(a_round_trip_gives_the_flux_back),
         cmocka_unit_test(area_lights_match_their_definitions),
