@@ -97,9 +97,9 @@ static void log2_fast_error(acc* a)
 static void pow_fast_error(acc* a)
 {
     for (int i = 0; i < 400000; ++i) {
-        float x = (float)acc_log_uniform(a, 1.5e-45, 3.4e38);
+        float x = acc_float(acc_log_uniform(a, 1.5e-45, 3.4e38));
         double l = log2((double)x), exponent = acc_uniform(a, -125.9, 127.9);
-        float y = (float)(exponent / l);
+        float y = acc_float(exponent / l);
         double reference = pow((double)x, (double)y);
         if (reference > 1.2e-38 && reference < 3.4e38) {
             ACC_ADD(a, acc_relative((double)hdrp_pow_fast(x, y), reference), "x = %.9g, y = %.9g",
@@ -110,8 +110,16 @@ static void pow_fast_error(acc* a)
 
 static void pow_fast_colour_error(acc* a)
 {
-    for (int i = 0; i < 400000; ++i) {
-        float x = (float)acc_uniform(a, 1e-3, 1.0), y = (float)acc_uniform(a, 0.3, 2.5);
+    for (int i = 0; i < 800000; ++i) {
+        double darkest = i % 2 ? 1e-2 : 1.0; /* the exponent and its rounding are largest there */
+        float x = fmaxf(
+            acc_float(i % 4 < 2 ? acc_uniform(a, 1e-3, darkest) : acc_log_uniform(a, 1e-3, 1.0)),
+            1e-3f);
+        float y = acc_float(i % 2 ? acc_uniform(a, 2.0, 2.5) : acc_uniform(a, 0.3, 2.5));
+        if (i < 2) { /* the worst that searches of 6e7 found */
+            x = i == 0 ? 0.00143253535f : 0.00259380531f;
+            y = i == 0 ? 2.36061811f : 2.39744878f;
+        }
         ACC_ADD(a, acc_relative((double)hdrp_pow_fast(x, y), pow((double)x, (double)y)),
                 "x = %.9g, y = %.9g", (double)x, (double)y);
     }

@@ -9,7 +9,7 @@
  *     static void sqrt_error(acc* a)
  *     {
  *         for (int i = 0; i < 1000; ++i) {
- *             float x = (float)acc_uniform(a, 0.0, 4.0);
+ *             float x = acc_float(acc_uniform(a, 0.0, 4.0));
  *             ACC_ADD(a, acc_relative(hdrp_sqrt(x), sqrt(x)), "x = %.9g", x);
  *         }
  *     }
