@@ -434,6 +434,23 @@ static void forward_passes_write_the_same_buffers(void** state)
     }
 }
 
+/* Data that was not made from a surface may have a mask without the feature. */
+static void a_mask_without_subsurface_scattering_is_not_stored(void** state)
+{
+    (void)state;
+    for (int i = 0; i < 100; ++i) {
+        hdrp_brdf_data d = random_material(HDRP_BRDF_FEATURE_TRANSMISSION);
+        d.subsurface_mask = 0.1f + 0.9f * random_unit();
+        hdrp_pack_gbuffer g = hdrp_pack_gbuffer_encode(d, random_extra(0u));
+        assert_true(hdrp_pack_sss_buffer_decode(g.rt0).subsurface_mask == 0.0f);
+        assert_int_equal(hdrp_pack_sss_buffer_decode(g.rt0).diffusion_profile, d.diffusion_profile);
+        assert_true(hdrp_pack_gbuffer_decode(g, 0u).subsurface_mask == 0.0f);
+        d.features |= HDRP_BRDF_FEATURE_SUBSURFACE;
+        g = hdrp_pack_gbuffer_encode(d, random_extra(0u));
+        assert_true(hdrp_pack_sss_buffer_decode(g.rt0).subsurface_mask > 0.0f);
+    }
+}
+
 static void neutral_values_are_exact(void** state)
 {
     (void)state;
@@ -465,6 +482,7 @@ int main(void)
         cmocka_unit_test(losses_are_told),
         cmocka_unit_test(occlusion_darkens_baked_light_only_without_rt4),
         cmocka_unit_test(forward_passes_write_the_same_buffers),
+        cmocka_unit_test(a_mask_without_subsurface_scattering_is_not_stored),
         cmocka_unit_test(neutral_values_are_exact),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
