@@ -82,8 +82,14 @@ HDRP_FN float hdrp_env_perceptual_roughness_from_lod(float lod, hdrp_u32 level_c
 
 /* >>spherical harmonics */
 
+/* The layout of hdrp_env_sh that C, std140, std430 and structured buffers share: nine vec4 in the
+ * order of the members. A change to it, or to what a coefficient means, changes the version; a
+ * shader may compare the macro with the number that it was compiled for. */
+#define HDRP_ENV_SH_LAYOUT_VERSION 1u
+#define HDRP_ENV_SH_LAYOUT_SIZE    144u
+
 /* Irradiance as a quadratic polynomial of the normal, per channel in xyz; w is 0. The
- * coefficients include every constant. A std140 or std430 block of nine vec4 reads the same. */
+ * coefficients include every constant. */
 struct hdrp_env_sh {
     hdrp_v4 mean; /* [-1e22,1e22] */
     hdrp_v4 x;    /* [-1e22,1e22] */
@@ -160,7 +166,20 @@ HDRP_FN hdrp_env_sh hdrp_env_sh_windowed(hdrp_env_sh sh, float lambda)
 extern "C" {
 #endif
 
-typedef char hdrp_i_env_sh_is_nine_vectors[sizeof(hdrp_env_sh) == 144 ? 1 : -1];
+/* The array has a negative size, which is an error in every C and C++, where an offset is wrong. */
+#define HDRP_I_ENV_SH_OFFSET(member, offset)                                                       \
+    typedef char hdrp_i_env_sh_##member[offsetof(hdrp_env_sh, member) == (offset) ? 1 : -1];
+HDRP_I_ENV_SH_OFFSET(mean, 0)
+HDRP_I_ENV_SH_OFFSET(x, 16)
+HDRP_I_ENV_SH_OFFSET(y, 32)
+HDRP_I_ENV_SH_OFFSET(z, 48)
+HDRP_I_ENV_SH_OFFSET(xy, 64)
+HDRP_I_ENV_SH_OFFSET(yz, 80)
+HDRP_I_ENV_SH_OFFSET(xz, 96)
+HDRP_I_ENV_SH_OFFSET(zz, 112)
+HDRP_I_ENV_SH_OFFSET(xx, 128)
+typedef char hdrp_i_env_sh_size_of[sizeof(hdrp_env_sh) == HDRP_ENV_SH_LAYOUT_SIZE ? 1 : -1];
+#undef HDRP_I_ENV_SH_OFFSET
 
 /* >>baking
  * From an image to three cubes: radiance with all mip levels, GGX lobes by roughness, irradiance.

@@ -412,6 +412,16 @@ static void a_lobe_narrower_than_a_texel_stays_positive(void** state)
     free(memory);
 }
 
+static void the_layout_of_harmonics_is_the_documented_one(void** state)
+{
+    (void)state;
+    assert_int_equal(sizeof(hdrp_env_sh), 9 * 16);
+    assert_int_equal(offsetof(hdrp_env_sh, mean), 0);
+    assert_int_equal(offsetof(hdrp_env_sh, xy), 64);
+    assert_int_equal(offsetof(hdrp_env_sh, xx), 128);
+    assert_int_equal(HDRP_ENV_SH_LAYOUT_VERSION, 1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -426,6 +436,7 @@ int main(void)
         cmocka_unit_test(windowing_keeps_a_lone_sun_positive),
         cmocka_unit_test(bad_descriptions_and_blocks_are_refused),
         cmocka_unit_test(bad_ranges_are_refused_and_write_nothing),
+        cmocka_unit_test(the_layout_of_harmonics_is_the_documented_one),
         cmocka_unit_test(an_environment_is_not_resampled_from_itself),
         cmocka_unit_test(a_lobe_narrower_than_a_texel_stays_positive),
     };
