@@ -329,6 +329,7 @@ struct hdrp_brdf_lit_view {
     hdrp_v3 specular_albedo; /* [0,1] of the base lobe, all bounces */
     hdrp_v3 diffuse_albedo;  /* [0,1] of the diffuse lobe on the side of v */
     hdrp_v3 transmitted;     /* [0,1] colour of refracted light, before the Fresnel term */
+    hdrp_v3 coat_v;          /* unit, v as the coat sees it: on its own side */
     float coat_n_dot_v;      /* [HDRP_BRDF_N_DOT_V_MIN,1] */
     float below_coat;        /* [0,1] share of light from v that the coat lets through */
 };
@@ -535,7 +536,8 @@ HDRP_FN hdrp_v3 hdrp_i_brdf_slab_share(hdrp_v3 diffuse_color, hdrp_v3 transmitta
  *            hdrp_brdf_fgd_fast; only hdrp_brdf_lit_env_make and hdrp_brdf_lit_pdf depend on it
  *  features  any    HDRP_BRDF_FEATURE_... that the material may have, HDRP_BRDF_LIT_EXACT
  *  returns   valid
- *  edges     a v below the surface is bent to just above it, as normal maps make them
+ *  edges     a v below the surface is bent to just above it, as normal maps make them; one below
+ *            the coat likewise, for the coat alone
  *  error     none: composed of the functions above
  *  source    Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
  *            Definition Render Pipeline", slides on the Lit shader
@@ -563,10 +565,13 @@ HDRP_FN hdrp_brdf_lit_view hdrp_brdf_lit_view_make(hdrp_brdf_data d, hdrp_v3 v, 
         w.transmitted =
             hdrp_v3_scale(hdrp_v3_mul(d.diffuse_color, d.transmittance), d.transmission);
     }
+    w.coat_v = w.v;
     w.coat_n_dot_v = w.n_dot_v;
     w.below_coat = 1.0f;
     if ((features & HDRP_BRDF_FEATURE_CLEAR_COAT) != 0u) {
-        w.coat_n_dot_v = hdrp_clamp(hdrp_v3_dot(d.coat_normal, w.v), HDRP_BRDF_N_DOT_V_MIN, 1.0f);
+        w.coat_v = hdrp_i_brdf_facing(w.v, d.coat_normal);
+        w.coat_n_dot_v =
+            hdrp_clamp(hdrp_v3_dot(d.coat_normal, w.coat_v), HDRP_BRDF_N_DOT_V_MIN, 1.0f);
         w.below_coat = hdrp_i_brdf_below_coat(d.coat_mask, w.coat_n_dot_v);
     }
     return w;
@@ -602,10 +607,12 @@ HDRP_FN hdrp_v3 hdrp_i_brdf_lit_f(hdrp_brdf_data d, hdrp_brdf_lit_view w, float 
 }
 
 /** The coat's own lobe, cosine included. */
-HDRP_FN float hdrp_i_brdf_lit_coat(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdrp_v3 h,
-                                   float coat_n_dot_l, float l_dot_h)
+HDRP_FN float hdrp_i_brdf_lit_coat(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdrp_v3 l,
+                                   float coat_n_dot_l)
 {
     float alpha = hdrp_brdf_alpha_from_perceptual_roughness(d.coat_perceptual_roughness);
+    hdrp_v3 h = hdrp_brdf_half_vector(l, w.coat_v, d.coat_normal);
+    float l_dot_h = hdrp_saturate(hdrp_v3_dot(l, h));
     return d.coat_mask * hdrp_brdf_f_schlick(HDRP_BRDF_COAT_FRESNEL0, 1.0f, l_dot_h) *
            hdrp_brdf_d_ggx_vectors(d.coat_normal, h, alpha) *
            hdrp_brdf_v_smith_ggx(coat_n_dot_l, w.coat_n_dot_v, alpha) * coat_n_dot_l;
@@ -660,7 +667,7 @@ HDRP_FN hdrp_brdf_lit hdrp_brdf_lit_eval(hdrp_brdf_data d, hdrp_brdf_lit_view w,
         float coat_n_dot_l = hdrp_v3_dot(d.coat_normal, l);
         float coat_front = hdrp_saturate(coat_n_dot_l);
         float both = w.below_coat * hdrp_i_brdf_below_coat(d.coat_mask, hdrp_abs(coat_n_dot_l));
-        float coat = hdrp_i_brdf_lit_coat(d, w, h, coat_front, l_dot_h);
+        float coat = hdrp_i_brdf_lit_coat(d, w, l, coat_front);
         r.diffuse = hdrp_v3_scale(r.diffuse, both);
         r.specular = hdrp_v3_add(hdrp_v3_scale(r.specular, both), hdrp_v3_splat(coat));
     }
@@ -739,7 +746,7 @@ HDRP_FN hdrp_brdf_lit_env hdrp_i_brdf_lit_env_set_coat(hdrp_brdf_lit_env e, hdrp
     float weight = base.schlick / base.albedo;
     float lobe = 1.0f - d.coat_mask * hdrp_lerp(HDRP_BRDF_COAT_FRESNEL0, 1.0f, weight);
     float all_around = 1.0f - d.coat_mask * HDRP_I_BRDF_COAT_FRESNEL_MEAN;
-    e.coat_direction = hdrp_normalize_or(hdrp_i_brdf_reflect(w.v, d.coat_normal), d.normal);
+    e.coat_direction = hdrp_normalize_or(hdrp_i_brdf_reflect(w.coat_v, d.coat_normal), d.normal);
     e.coat_weight = d.coat_mask * hdrp_lerp(coat.schlick, coat.albedo, HDRP_BRDF_COAT_FRESNEL0);
     e.specular_weight = hdrp_v3_scale(e.specular_weight, w.below_coat * lobe);
     e.transmitted_weight = hdrp_v3_scale(e.transmitted_weight, w.below_coat * lobe);
@@ -800,6 +807,10 @@ HDRP_FN hdrp_brdf_lit_env hdrp_brdf_lit_env_make(hdrp_brdf_data d, hdrp_brdf_lit
 /* >>sampling lit
  * One direction from all lobes of the Lit model, for path tracers. */
 
+/* Least share of the light of a refracting wall by which it is chosen. At a grazing view the Fresnel
+ * term of the view is 1, but the facets of a rough wall are met at other angles and let light in. */
+#define HDRP_I_BRDF_REFRACTED_MIN 0.25f
+
 /* Relative shares of the lobes, and the sum of all. */
 struct hdrp_i_brdf_shares {
     float diffuse; /* with what bounces more than once between microfacets */
@@ -825,7 +836,8 @@ HDRP_FN hdrp_i_brdf_shares hdrp_i_brdf_lit_shares(hdrp_brdf_data d, hdrp_brdf_li
                     : 0.0f;
     s.coat = (features & HDRP_BRDF_FEATURE_CLEAR_COAT) != 0u ? 1.0f - w.below_coat : 0.0f;
     s.refracted = (features & HDRP_BRDF_FEATURE_REFRACTION) != 0u
-                      ? hdrp_v3_max_component(w.transmitted) * (1.0f - f) * w.below_coat
+                      ? hdrp_v3_max_component(w.transmitted) *
+                            hdrp_max(1.0f - f, HDRP_I_BRDF_REFRACTED_MIN) * w.below_coat
                       : 0.0f;
     s.specular = (hdrp_v3_max_component(w.specular_albedo) - again) * w.below_coat;
     /* A black material still needs some lobe. */
@@ -883,7 +895,7 @@ HDRP_FN float hdrp_brdf_lit_pdf(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdrp_v3 
     p += s.through * hdrp_hemisphere_cosine_pdf(-n_dot_l);
     if ((features & HDRP_BRDF_FEATURE_CLEAR_COAT) != 0u) {
         hdrp_basis f = hdrp_basis_from_normal(d.coat_normal);
-        p += s.coat * hdrp_i_brdf_lobe_pdf(f.tangent, f.bitangent, d.coat_normal, w.v, l,
+        p += s.coat * hdrp_i_brdf_lobe_pdf(f.tangent, f.bitangent, d.coat_normal, w.coat_v, l,
                                            hdrp_i_brdf_equal_alphas(d.coat_perceptual_roughness));
     }
     if ((features & HDRP_BRDF_FEATURE_REFRACTION) != 0u) {
@@ -935,7 +947,7 @@ HDRP_FN hdrp_v3 hdrp_brdf_lit_sample(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdr
         l = hdrp_i_brdf_from_frame(d.tangent, d.bitangent, d.normal, l);
     } else if ((features & HDRP_BRDF_FEATURE_CLEAR_COAT) != 0u && x < coat) {
         hdrp_basis f = hdrp_basis_from_normal(d.coat_normal);
-        l = hdrp_i_brdf_lobe_sample(f.tangent, f.bitangent, d.coat_normal, w.v,
+        l = hdrp_i_brdf_lobe_sample(f.tangent, f.bitangent, d.coat_normal, w.coat_v,
                                     hdrp_i_brdf_equal_alphas(d.coat_perceptual_roughness), uv);
     } else if ((features & HDRP_BRDF_FEATURE_REFRACTION) != 0u && x < coat + s.refracted) {
         l = hdrp_i_brdf_lobe_sample(d.tangent, d.bitangent, d.normal, w.v,
