@@ -478,6 +478,16 @@ HDRP_FN hdrp_brdf_fgd hdrp_i_brdf_fgd_stretched(hdrp_brdf_fgd fgd, hdrp_brdf_fgd
     return f;
 }
 
+/** albedo, or where a specular lobe leaves less light than that to a colour, what it leaves: a table
+ *  of FGD and the fit that the other lobes are made of differ at grazing. */
+HDRP_FN hdrp_v3 hdrp_i_brdf_no_more_than_left(hdrp_v3 albedo, hdrp_v3 color,
+                                              hdrp_v3 specular_albedo)
+{
+    return hdrp_v3_make(hdrp_min(albedo.x, color.x * (1.0f - specular_albedo.x)),
+                        hdrp_min(albedo.y, color.y * (1.0f - specular_albedo.y)),
+                        hdrp_min(albedo.z, color.z * (1.0f - specular_albedo.z)));
+}
+
 /** w with what all lights share of the lobes of the base. */
 HDRP_FN hdrp_brdf_lit_view hdrp_i_brdf_lit_view_set_lobes(hdrp_brdf_lit_view w, hdrp_brdf_data d,
                                                           hdrp_brdf_fgd mean_fgd, hdrp_u32 features)
@@ -485,7 +495,7 @@ HDRP_FN hdrp_brdf_lit_view hdrp_i_brdf_lit_view_set_lobes(hdrp_brdf_lit_view w, 
     hdrp_brdf_fgd own = hdrp_i_brdf_lit_fgd(d, w, w.v, w.n_dot_v, features);
     hdrp_brdf_fgd fgd = mean_fgd;
     hdrp_v3 below = hdrp_v3_sub(hdrp_v3_splat(1.0f), w.fresnel0);
-    hdrp_v3 share, mean;
+    hdrp_v3 share, mean, diffuse;
     if ((features & HDRP_BRDF_FEATURE_ANISOTROPY) != 0u) {
         fgd = hdrp_i_brdf_fgd_stretched(mean_fgd, own,
                                         hdrp_brdf_fgd_fast(w.n_dot_v, d.perceptual_roughness));
@@ -497,10 +507,10 @@ HDRP_FN hdrp_brdf_lit_view hdrp_i_brdf_lit_view_set_lobes(hdrp_brdf_lit_view w, 
                                      w.bounces.reflected, 1.0f - hdrp_saturate(fgd.albedo)));
     share = hdrp_brdf_diffuse_share(own, w.bounces, w.fresnel90);
     mean = hdrp_brdf_diffuse_share_mean(w.fit, w.bounces, w.fresnel90);
-    w.diffuse_albedo = hdrp_v3_mul(hdrp_v3_mul(d.diffuse_color, below), share);
-    w.diffuse = hdrp_v3_make(HDRP_INV_PI * w.diffuse_albedo.x / mean.x,
-                             HDRP_INV_PI * w.diffuse_albedo.y / mean.y,
-                             HDRP_INV_PI * w.diffuse_albedo.z / mean.z);
+    diffuse = hdrp_v3_mul(hdrp_v3_mul(d.diffuse_color, below), share);
+    w.diffuse = hdrp_v3_make(HDRP_INV_PI * diffuse.x / mean.x, HDRP_INV_PI * diffuse.y / mean.y,
+                             HDRP_INV_PI * diffuse.z / mean.z);
+    w.diffuse_albedo = hdrp_i_brdf_no_more_than_left(diffuse, d.diffuse_color, w.specular_albedo);
     return w;
 }
 
@@ -725,8 +735,9 @@ HDRP_FN hdrp_brdf_lit_env hdrp_i_brdf_lit_env_set_transmitted(hdrp_brdf_lit_env 
     hdrp_brdf_fgd fgd = hdrp_brdf_fgd_fast(w.n_dot_v, p);
     hdrp_v3 reflected = hdrp_brdf_specular_albedo(fgd, w.fresnel0, w.fresnel90);
     e.transmitted_perceptual_roughness = p;
-    e.transmitted_weight =
-        hdrp_v3_mul(w.transmitted, hdrp_v3_sub(hdrp_v3_splat(fgd.albedo), reflected));
+    e.transmitted_weight = hdrp_i_brdf_no_more_than_left(
+        hdrp_v3_mul(w.transmitted, hdrp_v3_sub(hdrp_v3_splat(fgd.albedo), reflected)),
+        w.transmitted, w.specular_albedo);
     if (d.volume_thickness_m > 0.0f) {
         e.transmitted_direction = hdrp_brdf_refract(w.v, d.normal, 1.0f / d.ior).direction;
     }

@@ -258,6 +258,46 @@ static void no_combination_of_features_gains_energy(void** state)
     assert_true(most < LIMIT && light < LIMIT && film_light < 1.1);
 }
 
+static double sum_of_weights(const hdrp_brdf_lit_env* e, int c)
+{
+    return bt_component(e->specular_weight, c) + bt_component(e->diffuse_weight, c) +
+           bt_component(e->through_weight, c) + bt_component(e->transmitted_weight, c) +
+           (double)e->coat_weight;
+}
+
+/* At any view, and whether the FGD comes from a table or from the fit, which differ at grazing. */
+static void an_environment_is_never_asked_for_more_than_there_is(void** state)
+{
+    static hdrp_brdf_fgd table[TABLE_SIZE * TABLE_SIZE];
+    double most[2] = {0.0, 0.0}, coated[2] = {0.0, 0.0};
+    uint64_t seed = 11u;
+    (void)state;
+    assert_int_equal(hdrp_brdf_fgd_bake_rows(table, TABLE_SIZE, 0, TABLE_SIZE), HDRP_OK);
+    for (int i = 0; i < 400000; ++i) {
+        hdrp_u32 features = i % 2 ? 0u : (hdrp_u32)(i / 4) & HDRP_BRDF_FEATURE_ALL;
+        hdrp_brdf_data d = random_material(&seed, features);
+        double c = pow(1e-4, bt_random(&seed)), phi = 6.2832 * bt_random(&seed);
+        d.perceptual_roughness = often_an_end(&seed);
+        int fit = i / 2 % 2;
+        float n_dot_v = (float)c;
+        hdrp_brdf_fgd fgd =
+            fit ? hdrp_brdf_fgd_fast(n_dot_v, d.perceptual_roughness)
+                : hdrp_brdf_fgd_lookup(table, TABLE_SIZE, n_dot_v, d.perceptual_roughness);
+        hdrp_brdf_lit_view w = hdrp_brdf_lit_view_make(d, bt_direction(c, phi), fgd, features);
+        hdrp_brdf_lit_env e = hdrp_brdf_lit_env_make(d, w, features);
+        for (int channel = 0; channel < 3; ++channel) {
+            double* x = features & HDRP_BRDF_FEATURE_CLEAR_COAT ? coated : most;
+            x[fit] = fmax(x[fit], sum_of_weights(&e, channel));
+        }
+    }
+    print_message(
+        "weights of an environment: at most %.4f by table, %.4f by fit, under a coat %.4f "
+        "and %.4f\n",
+        most[0], most[1], coated[0], coated[1]);
+    assert_true(most[0] < 1.0 + 1e-6 && most[1] < 1.0 + 1e-6);
+    assert_true(coated[0] < LIMIT && coated[1] < LIMIT);
+}
+
 static void an_exact_film_gains_little(void** state)
 {
     furnace f = random_furnace(HDRP_BRDF_FEATURE_IRIDESCENCE | HDRP_BRDF_LIT_EXACT, 40, 5u);
@@ -382,6 +422,7 @@ int main(void)
         cmocka_unit_test(the_compensation_factor_with_a_table_keeps_a_furnace_white),
         cmocka_unit_test(white_diffuse_and_specular_never_gain),
         cmocka_unit_test(no_combination_of_features_gains_energy),
+        cmocka_unit_test(an_environment_is_never_asked_for_more_than_there_is),
         cmocka_unit_test(an_exact_film_gains_little),
         cmocka_unit_test(an_anisotropic_lobe_never_gains),
         cmocka_unit_test(published_diffuse_lobes_exceed_one),
