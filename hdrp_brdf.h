@@ -231,8 +231,10 @@ HDRP_FN hdrp_brdf_data hdrp_brdf_data_from_surface(hdrp_brdf_surface s)
  *  specular  [0,1]
  *  returns   [0,1]  m with diffuse = base (1 - m), specular = 0.04 (1 - m) + base m for some base
  *  edges     1 for a black diffuse colour, 0 for a specular colour of 0.04 and less
- *  error     <= 2.5e-6 absolute, in the specular colour of the result where one exists
- *            @accuracy brdf_metallic_from_colors
+ *  error     <= 4e-6 absolute, in the specular colour of a result of at most 0.99, where one
+ *            exists  @accuracy brdf_metallic_from_colors
+ *  error     <= 4e-5 absolute, likewise up to 0.999: 1 - m carries few digits there
+ *            @accuracy brdf_metallic_from_colors_metal
  *  source    both equations of Burley 2012, "Physically-Based Shading at Disney", solved for m
  *  note      the smaller root of 0.04 x^2 - (specular + diffuse) x + diffuse with x = 1 - m, in the
  *            form that does not cancel */
