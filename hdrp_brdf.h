@@ -3,6 +3,16 @@
  *
  * See hdrp_math.h for the languages, the conventions and the override macros.
  *
+ *     hdrp_brdf_data d = hdrp_brdf_data_from_surface(surface);
+ *     float n_dot_v = hdrp_v3_dot(d.normal, v);
+ *     hdrp_brdf_fgd fgd = hdrp_brdf_fgd_fast(n_dot_v, d.perceptual_roughness);
+ *     hdrp_brdf_lit_view w = hdrp_brdf_lit_view_make(d, v, fgd, d.features);
+ *     hdrp_brdf_lit r = hdrp_brdf_lit_eval(d, w, l, d.features);
+ *     hdrp_v3 nits = hdrp_v3_scale(hdrp_v3_add(r.diffuse, r.specular), lux);
+ *
+ * The first four lines once per pixel, the last two for each light. surface begins as
+ * hdrp_brdf_surface_default(); v and l point to the viewer and to the light.
+ *
  * >>index of the functions, without hdrp_brdf_ (written by tools/api_check.py --write)
  *   material: surface_default diffuse_color fresnel0 data_from_surface metallic_from_colors
  *       data_from_diffuse_specular dielectric_fresnel0
