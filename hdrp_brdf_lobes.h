@@ -181,8 +181,8 @@ HDRP_FN float hdrp_brdf_fresnel0_from_ior(float transmitted_ior, float incident_
  *  edges     the pole at 1 is kept finite: 1 gives 3.3e7, whose F0 is 1 again
  *  error     <= 1.5e-7 absolute, in the F0 of the result  @accuracy brdf_ior_from_fresnel0
  *  source    Lagarde 2013, "Memo on Fresnel equations", section "Fresnel at 0 degrees"
- *  note      the result is a ratio: for the F0 against another medium multiply it by the IOR of that
- *            medium. The side with the smaller IOR has the same F0 and the inverse ratio */
+ *  note      the result is a ratio: for an F0 against another medium multiply it by the IOR of that
+ *            medium. A medium on the thinner side has the same F0 and the inverse ratio */
 HDRP_FN float hdrp_brdf_ior_from_fresnel0(float fresnel0)
 {
     float s = hdrp_sqrt(hdrp_saturate(fresnel0));
