@@ -3,6 +3,16 @@
  *
  * See hdrp_math.h for the languages, the conventions and the override macros.
  *
+ *     hdrp_brdf_data d = hdrp_brdf_data_from_surface(surface);
+ *     float n_dot_v = hdrp_v3_dot(d.normal, v);
+ *     hdrp_brdf_fgd fgd = hdrp_brdf_fgd_fast(n_dot_v, d.perceptual_roughness);
+ *     hdrp_brdf_lit_view w = hdrp_brdf_lit_view_make(d, v, fgd, d.features);
+ *     hdrp_brdf_lit r = hdrp_brdf_lit_eval(d, w, l, d.features);
+ *     hdrp_v3 nits = hdrp_v3_scale(hdrp_v3_add(r.diffuse, r.specular), lux);
+ *
+ * The first four lines once per pixel, the last two for each light. surface begins as
+ * hdrp_brdf_surface_default(); v and l point to the viewer and to the light.
+ *
  * >>index of the functions, without hdrp_brdf_ (written by tools/api_check.py --write)
  *   material: surface_default diffuse_color fresnel0 data_from_surface metallic_from_colors
  *       data_from_diffuse_specular dielectric_fresnel0
@@ -231,8 +241,10 @@ HDRP_FN hdrp_brdf_data hdrp_brdf_data_from_surface(hdrp_brdf_surface s)
  *  specular  [0,1]
  *  returns   [0,1]  m with diffuse = base (1 - m), specular = 0.04 (1 - m) + base m for some base
  *  edges     1 for a black diffuse colour, 0 for a specular colour of 0.04 and less
- *  error     <= 2.5e-6 absolute, in the specular colour of the result where one exists
- *            @accuracy brdf_metallic_from_colors
+ *  error     <= 4e-6 absolute, in the specular colour of a result of at most 0.99, where one
+ *            exists  @accuracy brdf_metallic_from_colors
+ *  error     <= 4e-5 absolute, likewise up to 0.999: 1 - m carries few digits there
+ *            @accuracy brdf_metallic_from_colors_metal
  *  source    both equations of Burley 2012, "Physically-Based Shading at Disney", solved for m
  *  note      the smaller root of 0.04 x^2 - (specular + diffuse) x + diffuse with x = 1 - m, in the
  *            form that does not cancel */
@@ -308,7 +320,9 @@ HDRP_FN hdrp_v3 hdrp_brdf_dielectric_fresnel0(float ior, hdrp_v3 specular_color,
  * Layers, from the top: clear coat, thin film (part of the base's Fresnel term), specular base,
  * diffuse or transmitted light. What a layer reflects, the layers below it do not receive. */
 
-/* May be or-ed to the features: references evaluate the thin film for each light, exactly. */
+/* May be or-ed to the features: references evaluate the thin film for each light, exactly, and know
+ * what it leaves to the diffuse lobe. Of a white furnace a view then receives at most 1.01; what is
+ * sent everywhere by one light is at most 1.07 of it, because only the view's side knows. */
 #define HDRP_BRDF_LIT_EXACT 256u
 
 /* Smallest cosine of the view. What lies beyond is shaded as if it were just visible. */
@@ -329,6 +343,7 @@ struct hdrp_brdf_lit_view {
     hdrp_v3 specular_albedo; /* [0,1] of the base lobe, all bounces */
     hdrp_v3 diffuse_albedo;  /* [0,1] of the diffuse lobe on the side of v */
     hdrp_v3 transmitted;     /* [0,1] colour of refracted light, before the Fresnel term */
+    hdrp_v3 coat_v;          /* unit, v as the coat sees it: on its own side */
     float coat_n_dot_v;      /* [HDRP_BRDF_N_DOT_V_MIN,1] */
     float below_coat;        /* [0,1] share of light from v that the coat lets through */
 };
@@ -477,6 +492,62 @@ HDRP_FN hdrp_brdf_fgd hdrp_i_brdf_fgd_stretched(hdrp_brdf_fgd fgd, hdrp_brdf_fgd
     return f;
 }
 
+/** albedo, or where a specular lobe leaves less light to a colour, what it leaves. A table of FGD
+ *  and the fit that the other lobes are made of differ at grazing. */
+HDRP_FN hdrp_v3 hdrp_i_brdf_no_more_than_left(hdrp_v3 albedo, hdrp_v3 color,
+                                              hdrp_v3 specular_albedo)
+{
+    return hdrp_v3_make(hdrp_min(albedo.x, color.x * (1.0f - specular_albedo.x)),
+                        hdrp_min(albedo.y, color.y * (1.0f - specular_albedo.y)),
+                        hdrp_min(albedo.z, color.z * (1.0f - specular_albedo.z)));
+}
+
+/** Fresnel term of the base for one light. */
+HDRP_FN hdrp_v3 hdrp_i_brdf_lit_f(hdrp_brdf_data d, hdrp_brdf_lit_view w, float l_dot_h,
+                                  hdrp_u32 features)
+{
+    if ((features & HDRP_BRDF_LIT_EXACT) != 0u &&
+        (features & HDRP_BRDF_FEATURE_IRIDESCENCE) != 0u) {
+        hdrp_v3 f0 = hdrp_i_brdf_lit_bare_fresnel0(d, features);
+        hdrp_v3 bare = hdrp_brdf_f_schlick_rgb(f0, hdrp_brdf_fresnel90(f0), l_dot_h);
+        return hdrp_v3_lerp(bare, hdrp_i_brdf_lit_film(d, l_dot_h, features), d.film_mask);
+    }
+    return hdrp_brdf_f_schlick_rgb(w.fresnel0, w.fresnel90, l_dot_h);
+}
+
+/** Mirror direction of v about n. */
+HDRP_FN hdrp_v3 hdrp_i_brdf_reflect(hdrp_v3 v, hdrp_v3 n)
+{
+    return hdrp_v3_sub(hdrp_v3_scale(n, 2.0f * hdrp_v3_dot(n, v)), v);
+}
+
+/* Facets over which an exact film is averaged, once per view. A white surface under it gains up to
+ * 0.7 %; with half as many facets it would be 1.6 %. */
+#define HDRP_I_BRDF_FILM_FACETS 64u
+
+/** Mean Fresnel term of the first bounce in the base lobe, over facets that v sees and that let its
+ *  light go again. The Schlick curve of an exact film is right at one angle only. */
+HDRP_FN hdrp_v3 hdrp_i_brdf_lit_f_mean(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdrp_u32 features)
+{
+    hdrp_v3 v = hdrp_v3_make(hdrp_v3_dot(d.tangent, w.v), hdrp_v3_dot(d.bitangent, w.v), w.n_dot_v);
+    hdrp_v3 sum = hdrp_v3_splat(0.0f);
+    float facets = HDRP_FLT_MIN;
+    hdrp_u32 i;
+    for (i = 0u; i < HDRP_I_BRDF_FILM_FACETS; ++i) {
+        hdrp_v2 u = hdrp_hammersley(i, HDRP_I_BRDF_FILM_FACETS);
+        hdrp_v3 h = hdrp_brdf_sample_vndf(
+            v, w.alphas.t, w.alphas.b,
+            hdrp_v2_make(u.x, u.y + 0.5f / hdrp_f32_from_u32(HDRP_I_BRDF_FILM_FACETS)));
+        hdrp_v3 l = hdrp_i_brdf_reflect(v, h);
+        float open = hdrp_saturate(l.z);
+        open *= hdrp_brdf_v_smith_ggx_aniso(l.x, l.y, open, v.x, v.y, v.z, w.alphas.t, w.alphas.b);
+        facets += open;
+        sum = hdrp_v3_mad(sum, hdrp_i_brdf_lit_f(d, w, hdrp_saturate(hdrp_v3_dot(v, h)), features),
+                          open);
+    }
+    return hdrp_v3_scale(sum, 1.0f / facets);
+}
+
 /** w with what all lights share of the lobes of the base. */
 HDRP_FN hdrp_brdf_lit_view hdrp_i_brdf_lit_view_set_lobes(hdrp_brdf_lit_view w, hdrp_brdf_data d,
                                                           hdrp_brdf_fgd mean_fgd, hdrp_u32 features)
@@ -484,7 +555,7 @@ HDRP_FN hdrp_brdf_lit_view hdrp_i_brdf_lit_view_set_lobes(hdrp_brdf_lit_view w, 
     hdrp_brdf_fgd own = hdrp_i_brdf_lit_fgd(d, w, w.v, w.n_dot_v, features);
     hdrp_brdf_fgd fgd = mean_fgd;
     hdrp_v3 below = hdrp_v3_sub(hdrp_v3_splat(1.0f), w.fresnel0);
-    hdrp_v3 share, mean;
+    hdrp_v3 share, mean, diffuse;
     if ((features & HDRP_BRDF_FEATURE_ANISOTROPY) != 0u) {
         fgd = hdrp_i_brdf_fgd_stretched(mean_fgd, own,
                                         hdrp_brdf_fgd_fast(w.n_dot_v, d.perceptual_roughness));
@@ -496,10 +567,20 @@ HDRP_FN hdrp_brdf_lit_view hdrp_i_brdf_lit_view_set_lobes(hdrp_brdf_lit_view w, 
                                      w.bounces.reflected, 1.0f - hdrp_saturate(fgd.albedo)));
     share = hdrp_brdf_diffuse_share(own, w.bounces, w.fresnel90);
     mean = hdrp_brdf_diffuse_share_mean(w.fit, w.bounces, w.fresnel90);
-    w.diffuse_albedo = hdrp_v3_mul(hdrp_v3_mul(d.diffuse_color, below), share);
-    w.diffuse = hdrp_v3_make(HDRP_INV_PI * w.diffuse_albedo.x / mean.x,
-                             HDRP_INV_PI * w.diffuse_albedo.y / mean.y,
-                             HDRP_INV_PI * w.diffuse_albedo.z / mean.z);
+    diffuse = hdrp_v3_mul(hdrp_v3_mul(d.diffuse_color, below), share);
+    if ((features & HDRP_BRDF_LIT_EXACT) != 0u &&
+        (features & HDRP_BRDF_FEATURE_IRIDESCENCE) != 0u) {
+        hdrp_v3 one = hdrp_v3_splat(1.0f);
+        hdrp_v3 f = hdrp_i_brdf_lit_f_mean(d, w, features);
+        hdrp_v3 again = w.bounces.reflected;
+        float albedo = hdrp_saturate(fgd.albedo);
+        w.specular_albedo = hdrp_v3_saturate(hdrp_v3_lerp(again, f, albedo));
+        diffuse = hdrp_v3_mul(d.diffuse_color,
+                              hdrp_v3_sub(one, hdrp_v3_lerp(again, f, hdrp_saturate(own.albedo))));
+    }
+    w.diffuse = hdrp_v3_make(HDRP_INV_PI * diffuse.x / mean.x, HDRP_INV_PI * diffuse.y / mean.y,
+                             HDRP_INV_PI * diffuse.z / mean.z);
+    w.diffuse_albedo = hdrp_i_brdf_no_more_than_left(diffuse, d.diffuse_color, w.specular_albedo);
     return w;
 }
 
@@ -535,7 +616,8 @@ HDRP_FN hdrp_v3 hdrp_i_brdf_slab_share(hdrp_v3 diffuse_color, hdrp_v3 transmitta
  *            hdrp_brdf_fgd_fast; only hdrp_brdf_lit_env_make and hdrp_brdf_lit_pdf depend on it
  *  features  any    HDRP_BRDF_FEATURE_... that the material may have, HDRP_BRDF_LIT_EXACT
  *  returns   valid
- *  edges     a v below the surface is bent to just above it, as normal maps make them
+ *  edges     a v below the surface is bent to just above it, as normal maps make them; one below
+ *            the coat likewise, for the coat alone
  *  error     none: composed of the functions above
  *  source    Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
  *            Definition Render Pipeline", slides on the Lit shader
@@ -563,10 +645,13 @@ HDRP_FN hdrp_brdf_lit_view hdrp_brdf_lit_view_make(hdrp_brdf_data d, hdrp_v3 v, 
         w.transmitted =
             hdrp_v3_scale(hdrp_v3_mul(d.diffuse_color, d.transmittance), d.transmission);
     }
+    w.coat_v = w.v;
     w.coat_n_dot_v = w.n_dot_v;
     w.below_coat = 1.0f;
     if ((features & HDRP_BRDF_FEATURE_CLEAR_COAT) != 0u) {
-        w.coat_n_dot_v = hdrp_clamp(hdrp_v3_dot(d.coat_normal, w.v), HDRP_BRDF_N_DOT_V_MIN, 1.0f);
+        w.coat_v = hdrp_i_brdf_facing(w.v, d.coat_normal);
+        w.coat_n_dot_v =
+            hdrp_clamp(hdrp_v3_dot(d.coat_normal, w.coat_v), HDRP_BRDF_N_DOT_V_MIN, 1.0f);
         w.below_coat = hdrp_i_brdf_below_coat(d.coat_mask, w.coat_n_dot_v);
     }
     return w;
@@ -588,24 +673,13 @@ HDRP_FN float hdrp_i_brdf_lit_dv(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdrp_v3
            hdrp_brdf_v_smith_ggx(n_dot_l, w.n_dot_v, w.alphas.t);
 }
 
-/** Fresnel term of the base for one light. */
-HDRP_FN hdrp_v3 hdrp_i_brdf_lit_f(hdrp_brdf_data d, hdrp_brdf_lit_view w, float l_dot_h,
-                                  hdrp_u32 features)
-{
-    if ((features & HDRP_BRDF_LIT_EXACT) != 0u &&
-        (features & HDRP_BRDF_FEATURE_IRIDESCENCE) != 0u) {
-        hdrp_v3 f0 = hdrp_i_brdf_lit_bare_fresnel0(d, features);
-        hdrp_v3 bare = hdrp_brdf_f_schlick_rgb(f0, hdrp_brdf_fresnel90(f0), l_dot_h);
-        return hdrp_v3_lerp(bare, hdrp_i_brdf_lit_film(d, l_dot_h, features), d.film_mask);
-    }
-    return hdrp_brdf_f_schlick_rgb(w.fresnel0, w.fresnel90, l_dot_h);
-}
-
 /** The coat's own lobe, cosine included. */
-HDRP_FN float hdrp_i_brdf_lit_coat(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdrp_v3 h,
-                                   float coat_n_dot_l, float l_dot_h)
+HDRP_FN float hdrp_i_brdf_lit_coat(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdrp_v3 l,
+                                   float coat_n_dot_l)
 {
     float alpha = hdrp_brdf_alpha_from_perceptual_roughness(d.coat_perceptual_roughness);
+    hdrp_v3 h = hdrp_brdf_half_vector(l, w.coat_v, d.coat_normal);
+    float l_dot_h = hdrp_saturate(hdrp_v3_dot(l, h));
     return d.coat_mask * hdrp_brdf_f_schlick(HDRP_BRDF_COAT_FRESNEL0, 1.0f, l_dot_h) *
            hdrp_brdf_d_ggx_vectors(d.coat_normal, h, alpha) *
            hdrp_brdf_v_smith_ggx(coat_n_dot_l, w.coat_n_dot_v, alpha) * coat_n_dot_l;
@@ -660,7 +734,7 @@ HDRP_FN hdrp_brdf_lit hdrp_brdf_lit_eval(hdrp_brdf_data d, hdrp_brdf_lit_view w,
         float coat_n_dot_l = hdrp_v3_dot(d.coat_normal, l);
         float coat_front = hdrp_saturate(coat_n_dot_l);
         float both = w.below_coat * hdrp_i_brdf_below_coat(d.coat_mask, hdrp_abs(coat_n_dot_l));
-        float coat = hdrp_i_brdf_lit_coat(d, w, h, coat_front, l_dot_h);
+        float coat = hdrp_i_brdf_lit_coat(d, w, l, coat_front);
         r.diffuse = hdrp_v3_scale(r.diffuse, both);
         r.specular = hdrp_v3_add(hdrp_v3_scale(r.specular, both), hdrp_v3_splat(coat));
     }
@@ -687,12 +761,6 @@ struct hdrp_brdf_lit_env {
 };
 HDRP_TYPEDEF(hdrp_brdf_lit_env)
 
-/** Mirror direction of v about n. */
-HDRP_FN hdrp_v3 hdrp_i_brdf_reflect(hdrp_v3 v, hdrp_v3 n)
-{
-    return hdrp_v3_sub(hdrp_v3_scale(n, 2.0f * hdrp_v3_dot(n, v)), v);
-}
-
 /** Direction from which a GGX lobe receives most of an environment that was filtered for views
  *  along the normal: between the mirror direction and the normal.
  *  n          unit   shading normal
@@ -718,8 +786,9 @@ HDRP_FN hdrp_brdf_lit_env hdrp_i_brdf_lit_env_set_transmitted(hdrp_brdf_lit_env 
     hdrp_brdf_fgd fgd = hdrp_brdf_fgd_fast(w.n_dot_v, p);
     hdrp_v3 reflected = hdrp_brdf_specular_albedo(fgd, w.fresnel0, w.fresnel90);
     e.transmitted_perceptual_roughness = p;
-    e.transmitted_weight =
-        hdrp_v3_mul(w.transmitted, hdrp_v3_sub(hdrp_v3_splat(fgd.albedo), reflected));
+    e.transmitted_weight = hdrp_i_brdf_no_more_than_left(
+        hdrp_v3_mul(w.transmitted, hdrp_v3_sub(hdrp_v3_splat(fgd.albedo), reflected)),
+        w.transmitted, w.specular_albedo);
     if (d.volume_thickness_m > 0.0f) {
         e.transmitted_direction = hdrp_brdf_refract(w.v, d.normal, 1.0f / d.ior).direction;
     }
@@ -739,7 +808,7 @@ HDRP_FN hdrp_brdf_lit_env hdrp_i_brdf_lit_env_set_coat(hdrp_brdf_lit_env e, hdrp
     float weight = base.schlick / base.albedo;
     float lobe = 1.0f - d.coat_mask * hdrp_lerp(HDRP_BRDF_COAT_FRESNEL0, 1.0f, weight);
     float all_around = 1.0f - d.coat_mask * HDRP_I_BRDF_COAT_FRESNEL_MEAN;
-    e.coat_direction = hdrp_normalize_or(hdrp_i_brdf_reflect(w.v, d.coat_normal), d.normal);
+    e.coat_direction = hdrp_normalize_or(hdrp_i_brdf_reflect(w.coat_v, d.coat_normal), d.normal);
     e.coat_weight = d.coat_mask * hdrp_lerp(coat.schlick, coat.albedo, HDRP_BRDF_COAT_FRESNEL0);
     e.specular_weight = hdrp_v3_scale(e.specular_weight, w.below_coat * lobe);
     e.transmitted_weight = hdrp_v3_scale(e.transmitted_weight, w.below_coat * lobe);
@@ -800,6 +869,10 @@ HDRP_FN hdrp_brdf_lit_env hdrp_brdf_lit_env_make(hdrp_brdf_data d, hdrp_brdf_lit
 /* >>sampling lit
  * One direction from all lobes of the Lit model, for path tracers. */
 
+/* Least share of its light by which a refracting wall is chosen. At a grazing view the Fresnel term
+ * of the view is 1, but facets of a rough wall are met at other angles and let light in. */
+#define HDRP_I_BRDF_REFRACTED_MIN 0.25f
+
 /* Relative shares of the lobes, and the sum of all. */
 struct hdrp_i_brdf_shares {
     float diffuse; /* with what bounces more than once between microfacets */
@@ -825,7 +898,8 @@ HDRP_FN hdrp_i_brdf_shares hdrp_i_brdf_lit_shares(hdrp_brdf_data d, hdrp_brdf_li
                     : 0.0f;
     s.coat = (features & HDRP_BRDF_FEATURE_CLEAR_COAT) != 0u ? 1.0f - w.below_coat : 0.0f;
     s.refracted = (features & HDRP_BRDF_FEATURE_REFRACTION) != 0u
-                      ? hdrp_v3_max_component(w.transmitted) * (1.0f - f) * w.below_coat
+                      ? hdrp_v3_max_component(w.transmitted) *
+                            hdrp_max(1.0f - f, HDRP_I_BRDF_REFRACTED_MIN) * w.below_coat
                       : 0.0f;
     s.specular = (hdrp_v3_max_component(w.specular_albedo) - again) * w.below_coat;
     /* A black material still needs some lobe. */
@@ -883,7 +957,7 @@ HDRP_FN float hdrp_brdf_lit_pdf(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdrp_v3 
     p += s.through * hdrp_hemisphere_cosine_pdf(-n_dot_l);
     if ((features & HDRP_BRDF_FEATURE_CLEAR_COAT) != 0u) {
         hdrp_basis f = hdrp_basis_from_normal(d.coat_normal);
-        p += s.coat * hdrp_i_brdf_lobe_pdf(f.tangent, f.bitangent, d.coat_normal, w.v, l,
+        p += s.coat * hdrp_i_brdf_lobe_pdf(f.tangent, f.bitangent, d.coat_normal, w.coat_v, l,
                                            hdrp_i_brdf_equal_alphas(d.coat_perceptual_roughness));
     }
     if ((features & HDRP_BRDF_FEATURE_REFRACTION) != 0u) {
@@ -935,7 +1009,7 @@ HDRP_FN hdrp_v3 hdrp_brdf_lit_sample(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdr
         l = hdrp_i_brdf_from_frame(d.tangent, d.bitangent, d.normal, l);
     } else if ((features & HDRP_BRDF_FEATURE_CLEAR_COAT) != 0u && x < coat) {
         hdrp_basis f = hdrp_basis_from_normal(d.coat_normal);
-        l = hdrp_i_brdf_lobe_sample(f.tangent, f.bitangent, d.coat_normal, w.v,
+        l = hdrp_i_brdf_lobe_sample(f.tangent, f.bitangent, d.coat_normal, w.coat_v,
                                     hdrp_i_brdf_equal_alphas(d.coat_perceptual_roughness), uv);
     } else if ((features & HDRP_BRDF_FEATURE_REFRACTION) != 0u && x < coat + s.refracted) {
         l = hdrp_i_brdf_lobe_sample(d.tangent, d.bitangent, d.normal, w.v,

@@ -113,7 +113,7 @@ HDRP_FN hdrp_v3 hdrp_brdf_f_schlick_rgb(hdrp_v3 fresnel0, float fresnel90, float
  *  eta          [0.25,4]    IOR of the far side over IOR of the side the light is on
  *  returns      [0,1]       1 at total internal reflection
  *  edges        0 for eta = 1; 1 at grazing incidence otherwise
- *  error        <= 1.5e-6 absolute, cosines 1e-3 and more from that of the critical angle
+ *  error        <= 4e-6 absolute, cosines 1e-3 and more from that of the critical angle
  *               @accuracy brdf_f_dielectric_exact
  *  error        <= 0.003 absolute, at the critical angle, where the slope is infinite
  *               @accuracy brdf_f_dielectric_critical
@@ -168,7 +168,7 @@ HDRP_FN float hdrp_brdf_f_conductor_exact(float cos_theta_i, float eta, float ka
  *  incident_ior     [0.1,10]   IOR of the side the light is on
  *  returns          [0,1]
  *  edges            0 for equal IORs
- *  error            <= 3e-7 absolute  @accuracy brdf_fresnel0_from_ior
+ *  error            <= 3.5e-7 absolute  @accuracy brdf_fresnel0_from_ior
  *  source           Lagarde 2013, "Memo on Fresnel equations", section "Fresnel at 0 degrees" */
 HDRP_FN float hdrp_brdf_fresnel0_from_ior(float transmitted_ior, float incident_ior)
 {
@@ -180,7 +180,9 @@ HDRP_FN float hdrp_brdf_fresnel0_from_ior(float transmitted_ior, float incident_
  *  returns   [1,3.4e7]
  *  edges     the pole at 1 is kept finite: 1 gives 3.3e7, whose F0 is 1 again
  *  error     <= 1.5e-7 absolute, in the F0 of the result  @accuracy brdf_ior_from_fresnel0
- *  source    Lagarde 2013, "Memo on Fresnel equations", section "Fresnel at 0 degrees" */
+ *  source    Lagarde 2013, "Memo on Fresnel equations", section "Fresnel at 0 degrees"
+ *  note      the result is a ratio: for an F0 against another medium multiply it by the IOR of that
+ *            medium. A medium on the thinner side has the same F0 and the inverse ratio */
 HDRP_FN float hdrp_brdf_ior_from_fresnel0(float fresnel0)
 {
     float s = hdrp_sqrt(hdrp_saturate(fresnel0));
@@ -328,7 +330,7 @@ HDRP_FN float hdrp_brdf_d_ggx(float n_dot_h, float alpha)
  *  edges    alpha below HDRP_ALPHA_MIN acts as HDRP_ALPHA_MIN; a half vector below the horizon
  *           counts as its mirror image above
  *  error    <= 1e-6 relative for n and h as given  @accuracy brdf_d_ggx_vectors
- *  error    <= 8.5e-4 relative against the h before it was rounded  @accuracy brdf_d_ggx_unrounded
+ *  error    <= 1e-3 relative against the h before it was rounded  @accuracy brdf_d_ggx_unrounded
  *  source   Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces", eq.
  *           33 */
 HDRP_FN float hdrp_brdf_d_ggx_vectors(hdrp_v3 n, hdrp_v3 h, float alpha)
@@ -412,7 +414,7 @@ HDRP_FN float hdrp_brdf_d_ggx_aniso(float t_dot_h, float b_dot_h, float n_dot_h,
  *           hdrp_abs(hdrp_v3_dot(b, n)) < 1e-6f; a frame
  *  edges    a width below HDRP_ALPHA_MIN acts as HDRP_ALPHA_MIN; a half vector below the horizon
  *           counts as its mirror image above
- *  error    <= 2e-6 relative for a frame and h as given, widths within 10 to 1
+ *  error    <= 3e-6 relative for a frame and h as given, widths within 10 to 1
  *           @accuracy brdf_d_ggx_aniso_vectors
  *  error    <= 5e-3 relative for any widths: the frame itself is rounded
  *           @accuracy brdf_d_ggx_aniso_vectors_narrow
@@ -1009,7 +1011,8 @@ HDRP_FN float hdrp_brdf_diffuse_disney(float n_dot_v, float n_dot_l, float l_dot
  *  l_dot_v               [-1,1]  cosine between both directions
  *  perceptual_roughness  [0,1]
  *  returns               [0,2]   1/sr, for a white surface
- *  edges                 albedo up to 1.0 at normal incidence, still 1.1 at grazing
+ *  edges                 albedo at normal incidence 0.95 (smooth) to 0.69 (rough), at grazing 0 to
+ *                        1.03
  *  error                 <= 2.5e-7 absolute  @accuracy brdf_diffuse_disney_normalized
  *  source                Lagarde and de Rousiers 2014, "Moving Frostbite to Physically Based
  *                        Rendering", listing 1 */
@@ -1214,7 +1217,8 @@ HDRP_FN float hdrp_i_brdf_film_channel(hdrp_i_brdf_film f, float fresnel0, float
  *  thickness_nm  [0,3000]
  *  fresnel0      [0,1]     of the base against air, per channel; taken as a dielectric of that F0
  *  returns       [0,1]     linear Rec.709, colours out of gamut are limited
- *  edges         no thickness gives the bare base exactly; 1 at grazing and for fresnel0 = 1
+ *  edges         no thickness gives the bare base exactly; 1 at grazing, for fresnel0 = 1 and, at
+ *                any thickness, where a film of less than outer_ior reflects totally
  *  error         <= 0.45 absolute, at grazing over a metal  @accuracy brdf_film
  *  error         <= 0.008 absolute, mean over the domain  @accuracy brdf_film_mean
  *  source        Belcour and Barla 2017, "A Practical Extension to Microfacet Theory for the
@@ -1322,8 +1326,13 @@ HDRP_FN hdrp_v3 hdrp_brdf_film_exact(float cos_theta, float outer_ior, float fil
  *  thickness_nm   [0,3000]
  *  wavelength_nm  [300,1000]
  *  returns        [0,1]
- *  edges          1 at grazing
- *  error          <= 3.5e-5 absolute  @accuracy brdf_film_airy
+ *  edges          1 at grazing, and where the film reflects totally: light does not tunnel through
+ *  error          <= 1.3e-4 absolute, light that came from air into the medium above
+ *                 @accuracy brdf_film_airy
+ *  error          <= 0.004 absolute, other light with a cosine 1e-3 and more above those at which
+ *                 film or base reflect totally  @accuracy brdf_film_airy_inside
+ *  error          <= 0.15 absolute, at the critical angle of the base, where the slope is infinite
+ *                 @accuracy brdf_film_airy_critical
  *  source         Born and Wolf 1999, "Principles of Optics", section 1.6.4, eq. 58
  *  note           1 + 2 q cos(phase) + q^2 as (1 + q)^2 - 4 q sin^2(phase / 2) */
 HDRP_FN float hdrp_brdf_film_airy(float cos_theta, float outer_ior, float film_ior, float base_ior,
@@ -1444,8 +1453,8 @@ HDRP_FN hdrp_brdf_refraction hdrp_brdf_refract(hdrp_v3 v, hdrp_v3 n, float eta)
  *  attenuation_distance_m  [0,inf]  infinite for a clear volume
  *  distance_m              [0,inf)  path in the volume
  *  returns                 [0,1]    per component
- *  edges                   1 for distance 0, whatever the volume; else 0 for a black colour or an
- *                          attenuation distance of 0
+ *  edges                   1 for distance 0, for an infinite attenuation distance and for a white
+ *                          colour; else 0 for a black colour or an attenuation distance of 0
  *  error                   <= 8e-8 absolute  @accuracy brdf_volume_transmittance
  *  source                  Beer-Lambert law, in the terms of glTF's KHR_materials_volume */
 HDRP_FN hdrp_v3 hdrp_brdf_volume_transmittance(hdrp_v3 attenuation_color,

@@ -29,10 +29,10 @@ static void fresnel0_error(acc* a)
 
 /* The specular colour that the result stands for: 0.04 (1 - m) + base m, with the base that gives
  * the diffuse colour. */
-static void metallic_from_colors_error(acc* a)
+static void metallic_error(acc* a, double lo, double hi)
 {
-    for (int i = 0; i < 100000; ++i) {
-        double metallic = acc_uniform(a, 0.0, 0.99), base = acc_uniform(a, 0.04, 1.0);
+    for (int i = 0; i < 400000; ++i) {
+        double metallic = acc_uniform(a, lo, hi), base = acc_uniform(a, 0.04, 1.0);
         float diffuse = acc_float(base * (1.0 - metallic));
         float specular = acc_float(0.04 + (base - 0.04) * metallic);
         double m = (double)hdrp_brdf_metallic_from_colors(diffuse, specular);
@@ -40,6 +40,16 @@ static void metallic_from_colors_error(acc* a)
         ACC_ADD(a, fabs(back - (double)specular), "diffuse %.9g, specular %.9g", (double)diffuse,
                 (double)specular);
     }
+}
+
+static void metallic_from_colors_error(acc* a)
+{
+    metallic_error(a, 0.0, 0.99);
+}
+
+static void metallic_from_colors_metal_error(acc* a)
+{
+    metallic_error(a, 0.99, 0.999);
 }
 
 /* Reflected is what is not transmitted: 1 - 4 n / (n + 1)^2. */
@@ -60,6 +70,7 @@ const acc_entry acc_brdf[] = {
     {"brdf_diffuse_color", diffuse_color_error},
     {"brdf_fresnel0", fresnel0_error},
     {"brdf_metallic_from_colors", metallic_from_colors_error},
+    {"brdf_metallic_from_colors_metal", metallic_from_colors_metal_error},
     {"brdf_dielectric_fresnel0", dielectric_fresnel0_error},
     {NULL, NULL},
 };

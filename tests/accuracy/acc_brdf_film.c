@@ -108,7 +108,7 @@ static film_input random_film(acc* a, int i)
 {
     film_input f;
     double steep = acc_uniform(a, 0.0, 1.0);
-    double in_air = i % 5 ? steep : steep * steep * steep + 1e-4;
+    double in_air = i % 5 ? steep : fmin(steep * steep * steep + 1e-4, 1.0);
     f.outer = acc_float(i % 4 ? 1.0 : acc_uniform(a, 1.0, 1.5));
     double sine2 = (1.0 - in_air * in_air) / ((double)f.outer * (double)f.outer);
     f.cosine = acc_float(sqrt(1.0 - sine2));
@@ -189,19 +189,55 @@ static void film_fast_mean(acc* a)
     mean(a, hdrp_brdf_film_fast);
 }
 
+static void compare_airy(acc* a, film_input in, float base)
+{
+    float wavelength = acc_float(acc_uniform(a, 300.0, 1000.0));
+    stack s = make_stack((double)in.cosine, (double)in.outer, (double)in.ior, (double)base,
+                         (double)in.nm);
+    float m = hdrp_brdf_film_airy(in.cosine, in.outer, in.ior, base, in.nm, wavelength);
+    ACC_ADD(a, fabs((double)m - airy(&s, (double)wavelength)),
+            "cosine %.9g, outer %.9g, ior %.9g, %.9g nm, base %.9g, %.9g nm", (double)in.cosine,
+            (double)in.outer, (double)in.ior, (double)in.nm, (double)base, (double)wavelength);
+}
+
 static void film_airy(acc* a)
 {
-    for (int i = 0; i < 20000; ++i) {
+    for (int i = 0; i < 200000; ++i) {
         film_input in = random_film(a, i);
-        float wavelength = acc_float(acc_uniform(a, 300.0, 1000.0));
-        float base = acc_float(ior_of((double)in.f0));
-        stack s = make_stack((double)in.cosine, (double)in.outer, (double)in.ior, (double)base,
-                             (double)in.nm);
-        float m = hdrp_brdf_film_airy(in.cosine, in.outer, in.ior, base, in.nm, wavelength);
-        ACC_ADD(a, fabs((double)m - airy(&s, (double)wavelength)),
-                "cosine %.6g, outer %.4g, ior %.4g, %.5g nm, base %.4g, %.4g nm", (double)in.cosine,
-                (double)in.outer, (double)in.ior, (double)in.nm, (double)base, (double)wavelength);
+        compare_airy(a, in, acc_float(ior_of((double)in.f0)));
     }
+}
+
+/* Cosine at and below which an interface to this IOR reflects totally; 0 where it never does. */
+static double critical_cosine(double outer, double ior)
+{
+    return sqrt(fmax(1.0 - ior * ior / (outer * outer), 0.0));
+}
+
+/* Films and bases that are thinner than the medium above, which the light did not enter from air:
+ * at the critical angle of the base, or from 1e-3 above in cosine. */
+static void airy_inside(acc* a, double least, double most)
+{
+    for (int i = 0; i < 200000; ++i) {
+        film_input in = random_film(a, i);
+        in.outer = acc_float(acc_uniform(a, 1.0, 1.5));
+        float base = acc_float(acc_uniform(a, 1.0, (double)in.outer));
+        double critical = critical_cosine((double)in.outer, (double)base);
+        in.cosine = acc_float(fmin(critical + acc_log_uniform(a, least, most), 1.0));
+        if (critical_cosine((double)in.outer, (double)in.ior) + 1e-3 <= (double)in.cosine) {
+            compare_airy(a, in, base);
+        }
+    }
+}
+
+static void film_airy_inside(acc* a)
+{
+    airy_inside(a, 1e-3, 1.0);
+}
+
+static void film_airy_critical(acc* a)
+{
+    airy_inside(a, 1e-9, 1e-3);
 }
 
 const acc_entry acc_brdf_film[] = {
@@ -212,5 +248,7 @@ const acc_entry acc_brdf_film[] = {
     {"brdf_film_fast", film_fast},
     {"brdf_film_fast_mean", film_fast_mean},
     {"brdf_film_airy", film_airy},
+    {"brdf_film_airy_inside", film_airy_inside},
+    {"brdf_film_airy_critical", film_airy_critical},
     {NULL, NULL},
 };

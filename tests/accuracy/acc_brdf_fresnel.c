@@ -79,10 +79,14 @@ static double critical_cosine(double eta)
 
 static void f_dielectric_exact(acc* a)
 {
-    for (int i = 0; i < COUNT; ++i) {
-        float c = i < 2 ? (float)i : cosine(a, i);
+    for (int i = 0; i < 10 * COUNT; ++i) {
         float eta = acc_float(i % 5 ? acc_log_uniform(a, 0.25, 4.0)
                                     : 1.0 + (i % 2 ? -1.0 : 1.0) * acc_log_uniform(a, 1e-7, 0.5));
+        float c = i < 2 ? (float)i : cosine(a, i);
+        if (i % 3 == 0 && eta < 1.0f) { /* close to total reflection, where the slope is steep */
+            double near_critical = critical_cosine((double)eta) + acc_log_uniform(a, 1e-3, 0.1);
+            c = acc_float(fmin(near_critical, 1.0));
+        }
         if (eta > 1.0f || fabs((double)c - critical_cosine((double)eta)) >= 1e-3) {
             compare_dielectric(a, c, eta);
         }
@@ -122,7 +126,7 @@ static double normal_incidence(double n1, double n2)
 
 static void fresnel0_from_ior(acc* a)
 {
-    for (int i = 0; i < COUNT; ++i) {
+    for (int i = 0; i < 50 * COUNT; ++i) {
         float outer = acc_float(i % 3 ? acc_log_uniform(a, 0.1, 10.0) : 1.0);
         float ior = acc_float(i % 2 ? acc_log_uniform(a, 0.1, 10.0) : acc_log_uniform(a, 1.0, 4e7));
         ACC_ADD(a,

@@ -138,6 +138,10 @@ static void occlusion_leaves_open_surfaces_alone(void** state)
     }
     /* A smooth surface seen head on reflects from above, where it is open. */
     assert_true(hdrp_brdf_specular_occlusion(0.5f, 1.0f, 0.0f) > 0.7f);
+    /* By hand: alpha 1/16, so that the exponent is 2^-2, and (1/16 + 1/2)^(1/4) is sqrt(3) / 2. */
+    assert_true(fabsf(hdrp_brdf_specular_occlusion(0.5f, 0.0625f, 0.25f) - 0.3660254f) < 1e-6f);
+    /* At alpha 1/8 the exponent is 2^-3: 0.75^(1/8) - 1/2. */
+    assert_true(fabsf(hdrp_brdf_specular_occlusion(0.5f, 0.25f, 0.35355339f) - 0.4646786f) < 2e-6f);
 }
 
 int main(void)

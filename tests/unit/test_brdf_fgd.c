@@ -119,6 +119,7 @@ static void coordinates_end_at_the_centres_of_outer_texels(void** state)
 
 static void the_fit_is_close_to_the_table(void** state)
 {
+    double albedo = 0.0, schlick = 0.0;
     (void)state;
     for (int i = 0; i < SIZE * SIZE; ++i) {
         float u = (float)(i % SIZE) / (float)(SIZE - 1), p = (float)(i / SIZE) / (float)(SIZE - 1);
@@ -126,7 +127,13 @@ static void the_fit_is_close_to_the_table(void** state)
         assert_true(fabsf(f.albedo - table[i].albedo) < 0.003f);
         assert_true(fabsf(f.schlick - table[i].schlick) < 0.006f);
         assert_true(f.schlick >= 0.0f && f.schlick <= f.albedo && f.albedo <= 1.0f);
+        albedo += (double)(f.albedo - table[i].albedo) / (SIZE * SIZE);
+        schlick += (double)(f.schlick - table[i].schlick) / (SIZE * SIZE);
     }
+    /* Its errors cancel but for the bias that it was given. One coefficient off by 1 % shows here
+     * before it shows in the largest error. */
+    print_message("mean error of the fit: albedo %.6f, schlick %.6f\n", albedo, schlick);
+    assert_true(fabs(albedo - 3.06e-4) < 5e-6 && fabs(schlick - 1.23e-4) < 5e-6);
 }
 
 static void equal_widths_share_a_fit(void** state)

@@ -41,6 +41,22 @@ static void a_film_of_no_thickness_is_the_bare_base(void** state)
     }
 }
 
+/* Light inside a coat that is steeper than its film's critical angle does not reach the base. */
+static void a_film_thinner_than_the_coat_reflects_totally(void** state)
+{
+    const float critical = 0.4988877f; /* sqrt(1 - (1.3 / 1.5)^2) */
+    film_function* films[] = {hdrp_brdf_film, hdrp_brdf_film_exact};
+    (void)state;
+    for (int k = 0; k < 2; ++k) {
+        for (float nm = 0.0f; nm <= 500.0f; nm += 250.0f) {
+            hdrp_v3 beyond = films[k](0.3f, 1.5f, 1.3f, nm, hdrp_v3_splat(0.04f));
+            hdrp_v3 before = films[k](critical + 0.02f, 1.5f, 1.3f, nm, hdrp_v3_splat(0.04f));
+            assert_true(beyond.x == 1.0f && beyond.y == 1.0f && beyond.z == 1.0f);
+            assert_true(before.x < 0.8f && before.z < 0.8f);
+        }
+    }
+}
+
 static void a_film_grows_continuously(void** state)
 {
     (void)state;
@@ -124,6 +140,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_film_of_no_thickness_is_the_bare_base),
+        cmocka_unit_test(a_film_thinner_than_the_coat_reflects_totally),
         cmocka_unit_test(a_film_grows_continuously),
         cmocka_unit_test(a_quarter_wave_film_is_an_antireflective_coating),
         cmocka_unit_test(a_mirror_and_a_grazing_view_reflect_all),

@@ -80,6 +80,11 @@ static void indices_and_f0_convert_both_ways(void** state)
     float ior = hdrp_brdf_ior_from_fresnel0(1.0f);
     assert_true(ior < 1e8f && hdrp_brdf_fresnel0_from_ior(ior, 1.0f) > 0.9999998f);
     assert_true(hdrp_brdf_ior_from_fresnel0(NAN) == 1.0f);
+    /* Against water the ratio of IORs is what comes back. */
+    for (float outer = 1.0f; outer < 1.6f; outer += 0.33f) {
+        float f0 = hdrp_brdf_fresnel0_from_ior(2.4f, outer);
+        assert_true(fabsf(hdrp_brdf_ior_from_fresnel0(f0) * outer - 2.4f) < 2e-6f);
+    }
 }
 
 static void a_coat_is_exact_where_it_matters(void** state)
@@ -130,6 +135,31 @@ static void colours_convert_to_base_and_metallic(void** state)
     assert_true(fabsf(d.base_color.z - 0.3f) < 1e-6f && d.diffuse_color.x == 0.45f);
 }
 
+/* The way of the light that a first bounce loses: it meets facets again and again, each time reflects
+ * the mean Fresnel term, and escapes but for two thirds of the mean loss of a first bounce. */
+static void bounces_are_a_sum_over_the_way_of_the_light(void** state)
+{
+    (void)state;
+    for (int i = 0; i < 25; ++i) {
+        float f0 = 0.25f * (float)(i % 5), roughness = 0.2f + 0.2f * (float)(i / 5);
+        hdrp_brdf_fgd_fit fit = hdrp_brdf_fgd_fit_make(roughness);
+        hdrp_brdf_bounces b = hdrp_brdf_bounces_make(fit, hdrp_v3_splat(f0), 1.0f);
+        double mean = 0.0, left, escaped = 0.0;
+        for (int k = 0; k < 1000; ++k) {
+            double c = (k + 0.5) / 1000.0;
+            mean += 2e-3 * c * ((double)f0 + (1.0 - (double)f0) * pow(1.0 - c, 5.0));
+        }
+        left = mean; /* it is lost after its first reflection, and reflected once more */
+        for (int k = 0; k < 400; ++k) {
+            double again = left * mean;
+            escaped += again * (1.0 - (double)fit.mean_loss * 2.0 / 3.0);
+            left = again * (double)fit.mean_loss * 2.0 / 3.0;
+        }
+        assert_true(fabs((double)b.reflected.y - escaped) < 2e-6);
+        assert_true(fabsf(b.reflected.y + (1.0f - f0) * b.passed.y - 1.0f) < 1e-6f);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -143,6 +173,7 @@ int main(void)
         cmocka_unit_test(the_fast_coat_is_the_cubic_of_the_talk),
         cmocka_unit_test(a_refracted_angle_ends_at_the_horizon),
         cmocka_unit_test(colours_convert_to_base_and_metallic),
+        cmocka_unit_test(bounces_are_a_sum_over_the_way_of_the_light),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -276,6 +276,10 @@ static void the_environment_lobe_bends_towards_the_view(void** state)
     /* Stretched across it: only the normal itself does. */
     e = hdrp_brdf_env_lobe_aniso(t, b, n, v, -0.8f, 0.5f);
     assert_true(fabsf(e.normal.x) < 1e-6f && e.normal.z == 1.0f);
+    /* By hand: 0.5 * 1.5 sqrt(0.25) = 0.375 of the way to v, and 0.25 (1.2 - 0.5). */
+    e = hdrp_brdf_env_lobe_aniso(t, b, n, v, 0.5f, 0.25f);
+    assert_true(fabsf(e.normal.x - 0.236351f) < 2e-6f && fabsf(e.normal.z - 0.971667f) < 2e-6f);
+    assert_true(fabsf(e.perceptual_roughness - 0.175f) < 1e-7f);
     e = hdrp_brdf_env_lobe_aniso(t, b, n, b, 1.0f, 1.0f);
     assert_true(e.normal.z == 1.0f);
 }

@@ -241,6 +241,10 @@ static void the_environment_is_asked_where_it_is_seen(void** state)
                 fabsf(e.specular_direction.z - 0.8f) < 1e-3f);
     /* A rough lobe gets most of its light from nearer to the normal. */
     assert_true(hdrp_brdf_dominant_direction(d.normal, e.specular_direction, 1.0f).z == 1.0f);
+    /* By hand: 0.64 (sqrt(0.64) + 0.36) = 0.7424 of the way, (0.44544, 0, 0.85152) before scaling. */
+    hdrp_v3 mirror = hdrp_v3_make(0.6f, 0.0f, 0.8f);
+    hdrp_v3 dominant = hdrp_brdf_dominant_direction(d.normal, mirror, 0.36f);
+    assert_true(fabsf(dominant.x - 0.463522f) < 2e-6f && fabsf(dominant.z - 0.886086f) < 2e-6f);
     d.transmission = 1.0f;
     d.transmittance = d.diffuse_color = hdrp_v3_splat(1.0f);
     d.ior = 1.5f;
@@ -354,6 +358,75 @@ static void a_coat_on_its_own_material_hides_the_base_lobe(void** state)
     assert_true(hdrp_v3_max_component(w.fresnel0) < 1e-12f && w.fresnel90 < 1e-9f);
 }
 
+/* Over a base of its own index and no colour a coat is alone. Its lobe reflects what a GGX lobe of
+ * Schlick's F0 = 0.04 does. */
+static void a_coat_reflects_what_its_fresnel_term_and_width_say(void** state)
+{
+    bq_rule rule = bq_make(16, 12);
+    (void)state;
+    for (int i = 0; i < 24; ++i) {
+        double c = 0.1 + 0.3 * (i % 4), v[3] = {sqrt(1.0 - c * c), 0.0, c}, sum = 0.0;
+        hdrp_brdf_surface s = bt_surface(0.0f, 0.0f, 0.04f, 0.5f);
+        s.features = HDRP_BRDF_FEATURE_CLEAR_COAT;
+        s.coat_mask = i < 12 ? 1.0f : 0.5f;
+        s.coat_perceptual_roughness = 0.2f + 0.25f * (float)(i / 4 % 3);
+        hdrp_brdf_data d = hdrp_brdf_data_from_surface(s);
+        d.fresnel0 = hdrp_v3_splat(i < 12 ? 0.04f : 0.0f);
+        hdrp_brdf_lit_view w = bt_view(d, bt_v3(v), s.features);
+        w.fresnel0 = w.bounces.reflected = hdrp_v3_splat(0.0f);
+        w.fresnel90 = 0.0f;
+        double alpha = bt_alpha(d.coat_perceptual_roughness);
+        bq_fgd fgd = bq_integrate_fgd(&rule, c, alpha, points);
+        double expected = (double)d.coat_mask * (0.04 * (fgd.albedo - fgd.schlick) + fgd.schlick);
+        int count = bq_points(&rule, acos(c), 0.0, alpha, points);
+        for (int j = 0; j < count; ++j) {
+            hdrp_brdf_lit r = hdrp_brdf_lit_eval(d, w, bt_v3(points[j].l), s.features);
+            sum += points[j].weight * bt_lit_sum(r, 1);
+        }
+        assert_true(fabs(sum - expected) < 1e-3 * expected);
+    }
+}
+
+/* Light from all around meets the coat at all angles: its mean Fresnel term, by quadrature. */
+static void a_coat_dims_diffuse_light_by_its_mean_fresnel_term(void** state)
+{
+    double mean = 0.0;
+    const int steps = 2000;
+    (void)state;
+    for (int i = 0; i < steps; ++i) {
+        double c = (i + 0.5) / steps;
+        mean += 2.0 * c * (0.04 + 0.96 * pow(1.0 - c, 5.0)) / steps;
+    }
+    for (float mask = 0.25f; mask <= 1.0f; mask += 0.25f) {
+        hdrp_brdf_surface s = bt_surface(0.5f, 0.0f, 0.04f, 0.5f);
+        s.features = HDRP_BRDF_FEATURE_CLEAR_COAT;
+        s.coat_mask = mask;
+        hdrp_brdf_data d = hdrp_brdf_data_from_surface(s);
+        hdrp_brdf_lit_view w = bt_view(d, d.normal, s.features);
+        hdrp_brdf_lit_env e = hdrp_brdf_lit_env_make(d, w, s.features);
+        /* On the way out along the normal F0 is lost, on the way in the mean. */
+        double expected = (1.0 - 0.04 * (double)mask) * (1.0 - mean * (double)mask);
+        assert_true(fabs((double)(e.diffuse_weight.y / w.diffuse_albedo.y) - expected) < 1e-5);
+    }
+}
+
+/* The usage in the comment that opens hdrp_brdf.h. */
+static void the_usage_in_the_header_lights_a_pixel(void** state)
+{
+    hdrp_brdf_surface surface = hdrp_brdf_surface_default();
+    hdrp_v3 v = hdrp_v3_make(0.0f, 0.6f, 0.8f), l = hdrp_v3_make(0.8f, 0.0f, 0.6f);
+    float lux = 1000.0f;
+    (void)state;
+    hdrp_brdf_data d = hdrp_brdf_data_from_surface(surface);
+    float n_dot_v = hdrp_v3_dot(d.normal, v);
+    hdrp_brdf_fgd fgd = hdrp_brdf_fgd_fast(n_dot_v, d.perceptual_roughness);
+    hdrp_brdf_lit_view w = hdrp_brdf_lit_view_make(d, v, fgd, d.features);
+    hdrp_brdf_lit r = hdrp_brdf_lit_eval(d, w, l, d.features);
+    hdrp_v3 nits = hdrp_v3_scale(hdrp_v3_add(r.diffuse, r.specular), lux);
+    /* About Lambert: 0.5 / pi times the cosine of the light. */
+    assert_true(fabsf(nits.x - 0.5f * HDRP_INV_PI * 0.6f * lux) < 10.0f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -370,6 +443,9 @@ int main(void)
         cmocka_unit_test(a_black_surface_is_black),
         cmocka_unit_test(light_below_the_horizon_needs_a_slab_or_a_wall),
         cmocka_unit_test(a_coat_on_its_own_material_hides_the_base_lobe),
+        cmocka_unit_test(a_coat_reflects_what_its_fresnel_term_and_width_say),
+        cmocka_unit_test(a_coat_dims_diffuse_light_by_its_mean_fresnel_term),
+        cmocka_unit_test(the_usage_in_the_header_lights_a_pixel),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -145,6 +145,79 @@ static void a_black_surface_still_has_a_density(void** state)
     assert_true(hdrp_brdf_lit_pdf(d, w, drawn(d, w, &seed), 0u) > 0.0f);
 }
 
+/* A coat whose normal turns away from the viewer is bent into view like a base is. All of it then
+ * agrees on that view: what it reflects, how it is sampled, and with which density. */
+static void a_coat_that_faces_away_is_bent_into_view(void** state)
+{
+    const float roughness[] = {0.03f, 0.2f, 0.5f};
+    const double least[] = {0.93, 0.55, 0.2};
+    const int samples = 100000;
+    (void)state;
+    for (int k = 0; k < 3; ++k) {
+        hdrp_brdf_surface s = bt_surface(1.0f, 0.0f, 0.04f, 0.5f);
+        s.features = HDRP_BRDF_FEATURE_CLEAR_COAT;
+        s.coat_mask = 1.0f;
+        s.coat_perceptual_roughness = roughness[k];
+        s.coat_normal = hdrp_v3_make(-0.64f, 0.0f, 0.76f);
+        hdrp_brdf_data d = hdrp_brdf_data_from_surface(s);
+        hdrp_brdf_lit_view w = bt_view(d, bt_direction(0.3, 0.0), s.features);
+        assert_true(hdrp_v3_dot(d.coat_normal, w.v) < -0.3f);
+        double sum = 0.0, most = 0.0;
+        uint64_t seed = 300u;
+        for (int i = 0; i < samples; ++i) {
+            hdrp_v3 l = drawn(d, w, &seed);
+            double p = (double)hdrp_brdf_lit_pdf(d, w, l, d.features);
+            double f = bt_lit_sum(hdrp_brdf_lit_eval(d, w, l, d.features), 0);
+            sum += p > 0.0 ? f / p / samples : 0.0;
+            most = fmax(most, p > 0.0 ? f / p : 0.0);
+        }
+        hdrp_brdf_lit_env e = hdrp_brdf_lit_env_make(d, w, d.features);
+        print_message("coat of roughness %.2f: albedo %.4f, one sample at most %.2f\n",
+                      (double)roughness[k], sum, most);
+        /* Its Fresnel term is 1 there; what misses is shadowed, more the rougher it is. */
+        assert_true(sum > least[k] && sum < 1.005 && most < 1.05);
+        /* Seen at the horizon, the mirror direction is the continued view. */
+        assert_true(hdrp_v3_dot(e.coat_direction, w.coat_v) < -0.999f);
+        assert_true(fabsf(hdrp_v3_dot(e.coat_direction, d.coat_normal)) < 1e-3f);
+    }
+}
+
+static void no_sample_outweighs_the_others(void** state)
+{
+    double most = 0.0, wall = 0.0;
+    uint64_t seed = 400u;
+    (void)state;
+    for (int i = 0; i < 400000; ++i) {
+        hdrp_brdf_surface s = bt_surface(bt_random_f(&seed), 0.0f, 0.04f, 0.0f);
+        double x = bt_random(&seed);
+        s.features = (hdrp_u32)i & HDRP_BRDF_FEATURE_ALL;
+        s.metallic = i % 3 ? 0.0f : bt_random_f(&seed);
+        s.anisotropy = 2.0f * bt_random_f(&seed) - 1.0f;
+        s.coat_mask = bt_random_f(&seed);
+        /* Rounding a grazing direction turns its half vector by more than narrower lobes are wide. */
+        s.perceptual_roughness = 0.1f + 0.9f * bt_random_f(&seed);
+        s.coat_perceptual_roughness = 0.05f + 0.9f * bt_random_f(&seed);
+        s.coat_normal = bt_direction(1.0 - 0.3 * bt_random(&seed), 6.2832 * bt_random(&seed));
+        s.film_mask = bt_random_f(&seed);
+        s.film_thickness_nm = 1000.0f * bt_random_f(&seed);
+        s.transmittance = hdrp_v3_splat(bt_random_f(&seed));
+        s.transmission = bt_random_f(&seed);
+        s.ior = 1.0f + 2.0f * bt_random_f(&seed);
+        hdrp_brdf_data d = hdrp_brdf_data_from_surface(s);
+        hdrp_v3 v = bt_direction(i % 4 ? x : 1e-4 + 0.01 * x, 6.2832 * bt_random(&seed));
+        hdrp_brdf_lit_view w = bt_view(d, v, d.features);
+        hdrp_v3 l = drawn(d, w, &seed);
+        double p = (double)hdrp_brdf_lit_pdf(d, w, l, d.features);
+        double f = bt_lit_sum(hdrp_brdf_lit_eval(d, w, l, d.features), 0);
+        double weight = p > 0.0 ? f / p : 0.0;
+        most = fmax(most, weight);
+        wall = fmax(wall, hdrp_v3_dot(l, d.normal) < 0.0f ? weight : 0.0);
+    }
+    print_message("one sample weighs at most %.2f, of light through a wall or slab %.2f\n", most,
+                  wall);
+    assert_true(wall < 6.0 && most < 12.0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -152,6 +225,8 @@ int main(void)
         cmocka_unit_test(estimates_converge_to_the_albedo),
         cmocka_unit_test(a_direction_is_drawn_at_the_ends_of_the_square),
         cmocka_unit_test(a_black_surface_still_has_a_density),
+        cmocka_unit_test(a_coat_that_faces_away_is_bent_into_view),
+        cmocka_unit_test(no_sample_outweighs_the_others),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

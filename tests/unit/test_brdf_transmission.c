@@ -51,6 +51,9 @@ static void a_volume_without_bending_does_not_blur(void** state)
     (void)state;
     assert_true(hdrp_brdf_refraction_perceptual_roughness(0.7f, 1.0f) == 0.0f);
     assert_true(hdrp_brdf_refraction_perceptual_roughness(0.7f, 1.5f) == 0.7f);
+    /* In proportion to how far the IOR is on its way from 1 to 1.5. */
+    assert_true(hdrp_brdf_refraction_perceptual_roughness(0.5f, 1.25f) == 0.25f);
+    assert_true(hdrp_brdf_refraction_perceptual_roughness(0.5f, 1.4375f) == 0.4375f);
     assert_true(hdrp_brdf_refraction_perceptual_roughness(0.7f, 2.5f) == 0.7f);
 }
 
