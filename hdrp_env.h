@@ -230,7 +230,7 @@ typedef struct hdrp_env {
 
 /** Bytes that hdrp_env_init needs.
  *  desc     sizes; NULL for the defaults
- *  returns  bytes
+ *  returns  bytes, a multiple of HDRP_MEMORY_ALIGNMENT
  *  edges    0 where desc is not valid, or too large for the target */
 HDRP_API size_t hdrp_env_memory_size(const hdrp_env_desc* desc);
 
@@ -468,7 +468,7 @@ HDRP_API size_t hdrp_env_memory_size(const hdrp_env_desc* desc)
                                      hdrp_i_env_level_offset(d.specular_size, d.specular_levels) +
                                      hdrp_i_env_level_offset(d.irradiance_size, 1u));
     bytes += (uint64_t)sizeof(hdrp_env_node) * hdrp_i_env_radiance_texels(&d, 1u);
-    return bytes > (size_t)-1 / 2u ? 0u : (size_t)bytes;
+    return bytes > (size_t)-1 / 2u ? 0u : HDRP_MEMORY_ROUND_UP((size_t)bytes);
 }
 
 HDRP_API hdrp_result hdrp_env_init(hdrp_env* env, const hdrp_env_desc* desc, void* memory,

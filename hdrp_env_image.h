@@ -579,7 +579,7 @@ typedef struct hdrp_env_sample {
 
 /** Bytes that hdrp_env_sampler_init needs.
  *  image    the picture
- *  returns  bytes
+ *  returns  bytes, a multiple of HDRP_MEMORY_ALIGNMENT
  *  edges    0 where the image is not valid, or too large for the target */
 HDRP_API size_t hdrp_env_sampler_memory_size(const hdrp_env_image* image);
 
@@ -1303,7 +1303,8 @@ HDRP_API size_t hdrp_env_sampler_memory_size(const hdrp_env_image* image)
     if (rows == 0u || rows + 1u > limit / ((size_t)image->width + 2u)) {
         return 0u;
     }
-    return (rows + 1u) * sizeof(double) + rows * ((size_t)image->width + 1u) * sizeof(float);
+    return HDRP_MEMORY_ROUND_UP((rows + 1u) * sizeof(double) +
+                                rows * ((size_t)image->width + 1u) * sizeof(float));
 }
 
 HDRP_API hdrp_result hdrp_env_sampler_init(hdrp_env_sampler* sampler, const hdrp_env_image* image,

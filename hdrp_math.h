@@ -1687,6 +1687,9 @@ typedef enum hdrp_result {
 } hdrp_result;
 
 #define HDRP_MEMORY_ALIGNMENT 16
+/* Sizes of blocks are rounded up to it, as aligned_alloc of C11 asks. */
+#define HDRP_MEMORY_ROUND_UP(bytes)                                                                \
+    (((bytes) + (HDRP_MEMORY_ALIGNMENT - 1u)) / HDRP_MEMORY_ALIGNMENT * HDRP_MEMORY_ALIGNMENT)
 
 /** One line of English for r; never NULL. */
 static inline const char* hdrp_result_string(hdrp_result r)

@@ -8,7 +8,7 @@ static hdrp_env make_env(hdrp_env_desc desc, void** memory)
     hdrp_env env;
     size_t bytes = hdrp_env_memory_size(&desc);
     assert_true(bytes > 0u);
-    *memory = aligned_alloc(HDRP_MEMORY_ALIGNMENT, (bytes + 15u) / 16u * 16u);
+    *memory = aligned_alloc(HDRP_MEMORY_ALIGNMENT, bytes);
     assert_non_null(*memory);
     memset(*memory, 0xff, bytes);
     assert_int_equal(hdrp_env_init(&env, &desc, *memory, bytes), HDRP_OK);
@@ -312,6 +312,7 @@ static void bad_descriptions_and_blocks_are_refused(void** state)
     memset(&env, 7, sizeof env);
     before = env;
     bytes = hdrp_env_memory_size(NULL);
+    assert_int_equal(bytes % HDRP_MEMORY_ALIGNMENT, 0);
     memory = aligned_alloc(HDRP_MEMORY_ALIGNMENT, (bytes + 31u) / 16u * 16u);
     for (int i = 0; i < 10; ++i) {
         assert_int_equal(hdrp_env_memory_size(&bad[i]), 0);
@@ -365,10 +366,11 @@ static void an_environment_is_not_resampled_from_itself(void** state)
     size_t bytes = hdrp_env_memory_size(&desc), level = 6u * 64u * sizeof(hdrp_v4);
     void* other;
     unsigned char* before = malloc(bytes);
-    char* block = aligned_alloc(HDRP_MEMORY_ALIGNMENT, (level + bytes + 15u) / 16u * 16u);
+    char* block = aligned_alloc(HDRP_MEMORY_ALIGNMENT, level + bytes);
     char* memory = block + level;
     hdrp_env env, copy = make_env(desc, &other);
     assert_true(before && block);
+    memset(memory, 0xff, bytes);
     assert_int_equal(hdrp_env_init(&env, &desc, memory, bytes), HDRP_OK);
     assert_int_equal(hdrp_env_bake(&env, &image), HDRP_OK);
     hdrp_env_image own = hdrp_env_cube_image(&env.radiance, 0u);

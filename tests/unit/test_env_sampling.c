@@ -14,7 +14,9 @@ static fixture make_fixture(hdrp_env_image image)
     fixture f;
     size_t bytes = hdrp_env_sampler_memory_size(&image);
     f.image = image;
-    f.memory = aligned_alloc(HDRP_MEMORY_ALIGNMENT, (bytes + 15u) / 16u * 16u);
+    f.memory = aligned_alloc(HDRP_MEMORY_ALIGNMENT, bytes);
+    assert_non_null(f.memory);
+    memset(f.memory, 0xff, bytes);
     assert_int_equal(hdrp_env_sampler_init(&f.sampler, &image, f.memory, bytes), HDRP_OK);
     assert_int_equal(hdrp_env_sampler_build(&f.sampler, 0u, hdrp_env_image_rows(&image)), HDRP_OK);
     assert_int_equal(hdrp_env_sampler_finish(&f.sampler), HDRP_OK);
@@ -170,7 +172,7 @@ static void building_does_not_depend_on_the_split(void** state)
         fixture f = make_fixture(test_random_image((hdrp_env_image_kind)kind, 9u, 9u));
         uint32_t rows = hdrp_env_image_rows(&f.image);
         size_t bytes = hdrp_env_sampler_memory_size(&f.image);
-        void* memory = aligned_alloc(HDRP_MEMORY_ALIGNMENT, (bytes + 15u) / 16u * 16u);
+        void* memory = aligned_alloc(HDRP_MEMORY_ALIGNMENT, bytes);
         for (uint32_t step = 1; step < rows; ++step) {
             hdrp_env_sampler sampler;
             memset(memory, 0xff, bytes);
@@ -208,6 +210,7 @@ static void errors_are_reported_and_change_nothing(void** state)
     char* memory = aligned_alloc(HDRP_MEMORY_ALIGNMENT, (bytes + 31u) / 16u * 16u);
     hdrp_env_sampler sampler, before;
     bad.height = 0u;
+    assert_int_equal(bytes % HDRP_MEMORY_ALIGNMENT, 0);
     memset(&sampler, 7, sizeof sampler);
     before = sampler;
     assert_int_equal(hdrp_env_sampler_memory_size(&bad), 0);
