@@ -1,0 +1,218 @@
+#!/usr/bin/env python3
+"""Writes headers in which any constant or operator can be made wrong at run time:
+mutate.py FOLDER.
+
+FOLDER gets a copy of every public header and mutants.inc, a table of what can go wrong. In the
+copy each numeric constant c is written HDRP_MUTANT_SCALE(k, c), which multiplies by 1 unless mutant
+k is switched on, so that one program holds all mutants: nothing is compiled again, and switched off
+they change no bit of a result. Signs, comparisons, products and quotients are wrapped in the same
+way, on a sample of the places where they occur.
+
+Constants that are guards or limits are left out by name: tests/mutation/exclusions.txt says which
+and why. Zeros and integers have no relative error to make.
+"""
+import pathlib
+import re
+import sys
+import zlib
+from dataclasses import dataclass
+
+import hdrp_api
+
+EXCLUSIONS = hdrp_api.ROOT / "tests/mutation/exclusions.txt"
+
+LITERAL = re.compile(r"(?<![\w.])(?:\d+\.\d*|\.\d+|\d+(?=[eE]|f\b))(?:[eE][+-]?\d+)?f?(?![\w.])")
+SIGN = re.compile(r"(?<![-+eE])[-+](?![-+=>])|(?<=[A-Za-z_]e)[-+](?![-+=>])")
+COMPARISON = re.compile(r"(?<![<>=!-])(?:<=|>=|<|>)(?![<>=])")
+FACTOR = re.compile(r"(?<=[\w)\]] )([*/]) (?=[\w(])")
+
+# One operator in so many is tried.
+SAMPLED = {"sign": 6, "comparison": 4, "factor": 8}
+# Relative changes of a constant. Coefficients of a fit that is itself wrong by a percent are
+# marked in exclusions.txt.
+FINE, COARSE = 1e-3, 1e-2
+
+
+@dataclass
+class Mutant:
+    header: str
+    line: int
+    owner: str  # function or macro it stands in
+    kind: str  # constant, sign, comparison or factor
+    text: str
+    occurrence: int  # of this text in its owner, from 1
+    amount: float = 0.0
+
+    @property
+    def key(self):
+        return f"{self.owner} {self.text} {self.occurrence}"
+
+
+def exclusions():
+    """name -> word, which is 'guard', 'limit', 'language' or 'coarse'."""
+    found = {}
+    for line in EXCLUSIONS.read_text().split("\n"):
+        line = line.split("#")[0].split()
+        if line:
+            found[line[1]] = line[0]
+    return found
+
+
+def bodies(code):
+    """(owner, start, end, is formula) of each function body and macro value."""
+    for match in hdrp_api.DECLARATION.finditer(code):
+        closing = hdrp_api.matching(code, match.end() - 1, "()")
+        tail = re.match(r"\s*\{", code[closing + 1:]) if closing > 0 else None
+        if tail and match["type"].split()[0] not in ("return", "else", "typedef"):
+            start = closing + 1 + tail.end() - 1
+            yield match["name"], start + 1, hdrp_api.matching(code, start, "{}"), \
+                match["qualifier"] == "HDRP_FN"
+    # A macro's value may go on behind a backslash.
+    for match in re.finditer(r"^#\s*define\s+(HDRP_\w+)((?:[^\n]*\\\n)*[^\n]*)", code, re.M):
+        yield match[1], match.start(2), match.end(2), False
+
+
+def operand_end(code, start):
+    """End of the primary expression with its calls, members and subscripts that begins at start."""
+    at = start
+    match = re.compile(r"(?:\w|\.(?=\d))[\w.]*(?:(?<=\d[eE])[-+]\d+f?)?").match(code, at)
+    if match:
+        at = match.end()
+    while at < len(code) and code[at] in "([.":
+        if code[at] == ".":
+            at = re.compile(r"\.\w+").match(code, at).end()
+        else:
+            at = hdrp_api.matching(code, at, "()" if code[at] == "(" else "[]") + 1
+    return at
+
+
+def expression_around(code, start, end):
+    """Bounds of the arithmetic expressions on both sides of the comparison at start..end; None
+    where it belongs to a loop, whose end a mutant must not move."""
+    depth, left = 0, start - 1
+    while left >= 0:
+        c = code[left]
+        if c in ")]":
+            depth += 1
+        elif c in "([":
+            if depth == 0:
+                break
+            depth -= 1
+        elif depth == 0 and (c in "?:,;{=" or code[left - 1:left + 1] in ("&&", "||")
+                             or re.match(r"return\b", code[left - 5:left + 1] or "")
+                             or code[left - 5:left + 1] == "return"):
+            break
+        left -= 1
+    depth, right = 0, end
+    while right < len(code):
+        c = code[right]
+        if c in "([":
+            depth += 1
+        elif c in ")]":
+            if depth == 0:
+                break
+            depth -= 1
+        elif depth == 0 and (c in "?:,;" or code[right:right + 2] in ("&&", "||")):
+            break
+        right += 1
+    if left < 0 or right >= len(code) or code[left] == ";" and "for (" in \
+            code[code.rfind("\n", 0, left) + 1:left]:
+        return None
+    return left + 1, right
+
+
+def is_sampled(mutant):
+    return zlib.crc32(mutant.key.encode()) % SAMPLED[mutant.kind] == 0
+
+
+class Mutator:
+    """Collects the edits of one header: (offset, end, text) with {k} for the number."""
+
+    def __init__(self, header, excluded, first):
+        self.header, self.excluded, self.first = header, excluded, first
+        self.code = header.code
+        self.mutants, self.edits, self.seen = [], [], {}
+
+    def add(self, offset, owner, kind, text, edits):
+        key = (owner, text)
+        self.seen[key] = self.seen.get(key, 0) + 1
+        mutant = Mutant(self.header.name, self.header.line_of(offset), owner, kind, text,
+                        self.seen[key])
+        if kind == "constant":
+            mutant.amount = COARSE if self.excluded.get(owner) == "coarse" else FINE
+        elif not is_sampled(mutant):
+            return
+        number = self.first + len(self.mutants)
+        self.mutants.append(mutant)
+        self.edits += [(start, end, new.format(k=number)) for start, end, new in edits]
+
+    def constants(self, owner, start, end):
+        for match in LITERAL.finditer(self.code, start, end):
+            if float(match[0].rstrip("f")) != 0.0:
+                self.add(match.start(), owner, "constant", match[0],
+                         [(match.start(), match.start(), "HDRP_MUTANT_SCALE({k}, "),
+                          (match.end(), match.end(), ")")])
+
+    def operators(self, owner, start, end):
+        for match in SIGN.finditer(self.code, start, end):
+            line = self.code[self.code.rfind("\n", 0, match.start()):match.start()]
+            if "case " not in line and "#" not in line and not \
+                    LITERAL_EXPONENT.search(self.code[match.start() - 4:match.start() + 1]):
+                self.add(match.start(), owner, "sign", match[0],
+                         [(match.end(), match.end(), " HDRP_MUTANT_SIGN({k}) *")])
+        for match in COMPARISON.finditer(self.code, start, end):
+            around = expression_around(self.code, match.start(), match.end())
+            if around and around[0] > start and around[1] < end:
+                self.add(match.start(), owner, "comparison", match[0],
+                         [(around[0], around[0], " HDRP_MUTANT_NOT({k}, "),
+                          (around[1], around[1], ")")])
+        for match in FACTOR.finditer(self.code, start, end):
+            stop = operand_end(self.code, match.end())
+            if stop > match.end() and self.code[match.end():match.end() + 2] != "(h":
+                self.add(match.start(), owner, "factor", match[1],
+                         [(match.end(), match.end(), "HDRP_MUTANT_RECIPROCAL({k}, "),
+                          (stop, stop, ")")])
+
+    def run(self):
+        for owner, start, end, is_formula in bodies(self.code):
+            if self.excluded.get(owner) in ("guard", "limit", "language"):
+                continue
+            self.constants(owner, start, end)
+            if is_formula:
+                self.operators(owner, start, end)
+        return self
+
+    def text(self):
+        # What opens at one place nests the longer span outside; what closes there, the other way.
+        text = self.header.text
+        for start, _, new in sorted(self.edits, key=lambda e: e[0], reverse=True):
+            text = text[:start] + new + text[start:]
+        # A table in a function may then hold what is no constant to the compiler.
+        return re.sub(r"^( +)static (const \w+ \w+\[\d*\] = )", r"\1\2", text, flags=re.M)
+
+
+LITERAL_EXPONENT = re.compile(r"\d[eE][-+]$")
+
+
+def main():
+    if len(sys.argv) != 2:
+        sys.exit(__doc__.split("\n")[0])
+    folder = pathlib.Path(sys.argv[1])
+    folder.mkdir(parents=True, exist_ok=True)
+    excluded, mutants = exclusions(), []
+    for path in hdrp_api.headers():
+        mutator = Mutator(hdrp_api.header(path), excluded, len(mutants) + 1)
+        mutator.run()
+        mutants += mutator.mutants
+        text = mutator.text()
+        if path.name == "hdrp_math.h":
+            text = '#include "mutant.h"\n' + text
+        (folder / path.name).write_text(text)
+    rows = [f'{{"{m.header}", {m.line}, "{m.kind}", "{m.key}", {m.amount!r}f}},' for m in mutants]
+    (folder / "mutants.inc").write_text("\n".join(rows) + "\n")
+    kinds = [m.kind for m in mutants]
+    print(", ".join(f"{kinds.count(kind)} {kind}s" for kind in sorted(set(kinds))))
+
+
+if __name__ == "__main__":
+    main()
