@@ -1223,7 +1223,7 @@ HDRP_FN hdrp_basis hdrp_basis_from_uv(hdrp_surface_footprint footprint, hdrp_v2 
  *  edges    where x and y alone are longer than 1 (after filtering or compression) they are
  *           shortened to 1 and z = 0
  *  error    <= 0.025 degrees                @accuracy normal_from_xy
- *  error    <= 4e-5 degrees where z > 0.1  @accuracy normal_from_xy_upright
+ *  error    <= 2.2e-5 degrees where z > 0.1  @accuracy normal_from_xy_upright
  *  source   definition
  *  note     near z = 0 an error of 1e-8 in x already turns z by 0.01 degrees */
 HDRP_FN hdrp_v3 hdrp_normal_from_xy(float x, float y)

@@ -332,7 +332,7 @@ static void alphas_kulla(acc* a)
 {
     for (int i = 0; i < COUNT; ++i) {
         float p = acc_float(acc_uniform(a, 0.01, 1.0));
-        float k = i < 3 ? (float)(i - 1) : acc_float(acc_uniform(a, -1.0, 1.0));
+        float k = i < 3 ? acc_float(i - 1) : acc_float(acc_uniform(a, -1.0, 1.0));
         double t = fmax((double)p * (double)p * (1.0 + (double)k), (double)HDRP_ALPHA_MIN);
         double b = fmax((double)p * (double)p * (1.0 - (double)k), (double)HDRP_ALPHA_MIN);
         hdrp_brdf_alphas m = hdrp_brdf_alphas_kulla(p, k);
@@ -344,7 +344,7 @@ static void alphas_disney(acc* a)
 {
     for (int i = 0; i < COUNT; ++i) {
         float p = acc_float(acc_uniform(a, 0.02, 1.0));
-        float k = i < 3 ? (float)(i - 1) : acc_float(acc_uniform(a, -1.0, 1.0));
+        float k = i < 3 ? acc_float(i - 1) : acc_float(acc_uniform(a, -1.0, 1.0));
         double log_aspect = 0.5 * log1p(-0.9 * fabs((double)k)), log_alpha = 2.0 * log((double)p);
         double wide = exp(log_alpha - log_aspect);
         double narrow = fmax(exp(log_alpha + log_aspect), (double)HDRP_ALPHA_MIN);

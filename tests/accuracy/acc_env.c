@@ -13,7 +13,7 @@
 static void lod_error(acc* a)
 {
     for (int i = 0; i < 200000; ++i) {
-        double r = (double)(float)(i < 1000 ? i / 999.0 : acc_uniform(a, 0.0, 1.0));
+        double r = (double)acc_float(i < 1000 ? i / 999.0 : acc_uniform(a, 0.0, 1.0));
         hdrp_u32 levels = 1u + (hdrp_u32)(i % 32);
         double last = (double)levels - 1.0, b = 1.0 + (double)HDRP_ENV_LOD_CURVE;
         double reference = last * (b * r - (double)HDRP_ENV_LOD_CURVE * r * r);
@@ -28,7 +28,7 @@ static void perceptual_roughness_error(acc* a)
 {
     for (int i = 0; i < 20000; ++i) {
         hdrp_u32 levels = 2u + (hdrp_u32)(i % 31);
-        float lod = (float)acc_uniform(a, 0.0, (double)levels - 1.0);
+        float lod = acc_float(acc_uniform(a, 0.0, (double)levels - 1.0));
         lod = i < 31 ? (float)levels - 1.0f : lod;
         double lo = 0.0, hi = 1.0, t = (double)lod / ((double)levels - 1.0);
         for (int k = 0; k < 80; ++k) {
@@ -48,9 +48,9 @@ static void sh_windowed_error(acc* a)
         float* c = &sh.mean.x;
         memset(&sh, 0, sizeof sh);
         for (int k = 0; k < 36; ++k) {
-            c[k] = (float)acc_uniform(a, -1.0, 1.0);
+            c[k] = acc_float(acc_uniform(a, -1.0, 1.0));
         }
-        double lambda = (double)(float)acc_log_uniform(a, 1e-6, 1e6);
+        double lambda = (double)acc_float(acc_log_uniform(a, 1e-6, 1e6));
         hdrp_env_sh r = hdrp_env_sh_windowed(sh, (float)lambda);
         for (int k = 0; k < 36; ++k) {
             int l = k < 4 ? 0 : (k < 16 ? 1 : 2);
@@ -79,8 +79,8 @@ static void fill_sky(acc* a, const hdrp_env_image* image, sky_kind kind)
     }
     for (uint32_t k = 0; k < count; ++k) {
         hdrp_env_place place = {k / image->width / image->height, 0.0f, 0.0f};
-        place.u = ((float)(k % image->width) + 0.5f) / (float)image->width;
-        place.v = ((float)(k / image->width % image->height) + 0.5f) / (float)image->height;
+        place.u = (acc_float(k % image->width) + 0.5f) / (float)image->width;
+        place.v = (acc_float(k / image->width % image->height) + 0.5f) / (float)image->height;
         hdrp_v3 d = image->kind == HDRP_ENV_CUBE
                         ? hdrp_env_direction_from_cube(place)
                         : hdrp_env_direction_from_latlong(hdrp_v2_make(place.u, place.v));
@@ -95,13 +95,13 @@ static void fill_sky(acc* a, const hdrp_env_image* image, sky_kind kind)
             double linear =
                 1.0 + 0.9 * (v[0] * linear_axis[0] + v[1] * linear_axis[1] + v[2] * linear_axis[2]);
             image->texels[3u * k + (uint32_t)i] =
-                (float)(kind == SKY_LINEAR ? linear : (kind == SKY_SUN ? 0.0 : c[i]));
+                acc_float(kind == SKY_LINEAR ? linear : (kind == SKY_SUN ? 0.0 : c[i]));
         }
     }
     for (int i = 0; i < (kind == SKY_LAMPS ? 8 : (kind == SKY_SUN ? 1 : 0)); ++i) {
         uint32_t k = (uint32_t)(acc_random_bits(a) % (count - 2u));
         for (uint32_t c = 0; c < 3u * (1u + (uint32_t)i % 2u); ++c) {
-            image->texels[3u * k + c] = (float)acc_log_uniform(a, 1e2, 1e4);
+            image->texels[3u * k + c] = acc_float(acc_log_uniform(a, 1e2, 1e4));
         }
     }
 }

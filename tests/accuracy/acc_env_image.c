@@ -32,7 +32,8 @@ static hdrp_v3 any_direction(acc* a, int i)
     if (length == 0.0) {
         return hdrp_v3_make(0.0f, -1.0f, 0.0f);
     }
-    return hdrp_v3_make((float)(d[0] / length), (float)(d[1] / length), (float)(d[2] / length));
+    return hdrp_v3_make(acc_float(d[0] / length), acc_float(d[1] / length),
+                        acc_float(d[2] / length));
 }
 
 static uint32_t any_below(acc* a, uint32_t end)
@@ -62,9 +63,10 @@ static void latlong_uv_error(acc* a)
 static void latlong_direction_error(acc* a)
 {
     for (int i = 0; i < 300000; ++i) {
-        hdrp_v2 uv = hdrp_v2_make((float)acc_uniform(a, 0.0, 1.0), (float)acc_uniform(a, 0.0, 1.0));
+        hdrp_v2 uv =
+            hdrp_v2_make(acc_float(acc_uniform(a, 0.0, 1.0)), acc_float(acc_uniform(a, 0.0, 1.0)));
         if (i < 81) {
-            uv = hdrp_v2_make((float)(i % 9) / 8.0f, (float)(i / 9) / 8.0f);
+            uv = hdrp_v2_make(acc_float(i % 9) / 8.0f, acc_float(i / 9) / 8.0f);
         }
         hdrp_v3 d = hdrp_env_direction_from_latlong(uv);
         double p = tan(0.5 * PI * (double)uv.y), q = tan(PI * (0.5 - (double)uv.x));
@@ -112,8 +114,8 @@ static void cube_direction_error(acc* a)
     for (int i = 0; i < 300000; ++i) {
         hdrp_env_place place;
         place.face = (hdrp_u32)(i % 6);
-        place.u = i < 54 ? (float)(i / 6 % 3) / 2.0f : (float)acc_uniform(a, 0.0, 1.0);
-        place.v = i < 54 ? (float)(i / 18) / 2.0f : (float)acc_uniform(a, 0.0, 1.0);
+        place.u = i < 54 ? acc_float(i / 6 % 3) / 2.0f : acc_float(acc_uniform(a, 0.0, 1.0));
+        place.v = i < 54 ? acc_float(i / 18) / 2.0f : acc_float(acc_uniform(a, 0.0, 1.0));
         hdrp_v3 d = hdrp_env_direction_from_cube(place);
         double p[3];
         for (int k = 0; k < 3; ++k) {
@@ -292,7 +294,7 @@ static hdrp_env_image random_image(acc* a, int cube, uint32_t width, uint32_t he
     image.height = cube ? width : height;
     image.kind = cube ? HDRP_ENV_CUBE : HDRP_ENV_LATLONG;
     for (uint32_t i = 0; i < 3u * image.width * hdrp_env_image_rows(&image); ++i) {
-        texels[i] = (float)acc_log_uniform(a, 1e-2, i % 97u ? 1e1 : 1e6);
+        texels[i] = acc_float(acc_log_uniform(a, 1e-2, i % 97u ? 1e1 : 1e6));
     }
     return image;
 }
@@ -349,15 +351,16 @@ static void remove_sun_error(acc* a)
                        cos(elevation) * cos(azimuth)};
         double radius = acc_uniform(a, 0.002, 0.03);
         for (uint32_t k = 0; k < w * hdrp_env_image_rows(&image); ++k) {
-            hdrp_env_place place = {k / w / h, ((float)(k % w) + 0.5f) / (float)w,
-                                    ((float)(k / w % h) + 0.5f) / (float)h};
+            hdrp_env_place place = {k / w / h, (acc_float(k % w) + 0.5f) / (float)w,
+                                    (acc_float(k / w % h) + 0.5f) / (float)h};
             hdrp_v3 d = cube ? hdrp_env_direction_from_cube(place)
                              : hdrp_env_direction_from_latlong(hdrp_v2_make(place.u, place.v));
             double q = pow((double)d.x - s[0], 2.0) + pow((double)d.y - s[1], 2.0) +
                        pow((double)d.z - s[2], 2.0);
             double glow = 1e6 / (1.0 + pow(q / (radius * radius), 2.0));
             for (int c = 0; c < 3; ++c) {
-                texels[3u * k + (uint32_t)c] = (float)(1.0 + (double)d.y * 0.5 + glow / (c + 1.0));
+                texels[3u * k + (uint32_t)c] =
+                    acc_float(1.0 + (double)d.y * 0.5 + glow / (c + 1.0));
             }
         }
         hdrp_env_stats before, after;

@@ -57,7 +57,7 @@ static void atan2_fast_error(acc* a)
 {
     for (int i = 0; i < 400000; ++i) {
         double angle = acc_uniform(a, -3.2, 3.2), radius = acc_log_uniform(a, 1e-36, 3e38);
-        float x = (float)(cos(angle) * radius), y = (float)(sin(angle) * radius);
+        float x = acc_float(cos(angle) * radius), y = acc_float(sin(angle) * radius);
         ACC_ADD(a, fabs((double)hdrp_atan2_fast(y, x) - atan2((double)y, (double)x)),
                 "y = %.9g, x = %.9g", (double)y, (double)x);
     }
@@ -66,8 +66,8 @@ static void atan2_fast_error(acc* a)
 static void atan2_fast_relative_error(acc* a)
 {
     for (int i = 0; i < 400000; ++i) {
-        float x = (float)acc_log_uniform(a, 1e-3, 1e3);
-        float y = x * (float)(acc_log_uniform(a, 1e-9, 1e6) * (i % 2 ? 1.0 : -1.0));
+        float x = acc_float(acc_log_uniform(a, 1e-3, 1e3));
+        float y = x * acc_float(acc_log_uniform(a, 1e-9, 1e6) * (i % 2 ? 1.0 : -1.0));
         ACC_ADD(a, acc_relative((double)hdrp_atan2_fast(y, x), atan2((double)y, (double)x)),
                 "y = %.9g, x = %.9g", (double)y, (double)x);
     }
@@ -76,8 +76,8 @@ static void atan2_fast_relative_error(acc* a)
 static void exp2_fast_error(acc* a)
 {
     for (int i = 0; i < 800000; ++i) {
-        float x =
-            i % 2 ? (float)acc_uniform(a, -126.0, 127.9999) : (float)acc_uniform(a, -1.5, 1.5);
+        float x = i % 2 ? acc_float(acc_uniform(a, -126.0, 127.9999))
+                        : acc_float(acc_uniform(a, -1.5, 1.5));
         ACC_ADD(a, acc_relative((double)hdrp_exp2_fast(x), exp2((double)x)), "x = %.9g", (double)x);
     }
 }
@@ -89,7 +89,7 @@ static void log2_fast_error(acc* a)
         ACC_ADD(a, acc_relative((double)hdrp_log2_fast(x), log2((double)x)), "x = %.9g", (double)x);
     }
     for (int i = 0; i < 400000; ++i) { /* around 1, where the logarithm vanishes */
-        float x = (float)(1.0 + acc_log_uniform(a, 1e-7, 1.0) * (i % 2 ? 1.0 : -0.5));
+        float x = acc_float(1.0 + acc_log_uniform(a, 1e-7, 1.0) * (i % 2 ? 1.0 : -0.5));
         ACC_ADD(a, acc_relative((double)hdrp_log2_fast(x), log2((double)x)), "x = %.9g", (double)x);
     }
 }

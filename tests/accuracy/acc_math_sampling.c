@@ -96,7 +96,7 @@ static void fibonacci_sphere_error(acc* a)
 /* Inside, on the diagonals, and on the border. */
 static hdrp_v2 square_point(acc* a, int i)
 {
-    float x = (float)acc_uniform(a, 0.0, 1.0), y = (float)acc_uniform(a, 0.0, 1.0);
+    float x = acc_float(acc_uniform(a, 0.0, 1.0)), y = acc_float(acc_uniform(a, 0.0, 1.0));
     y = i % 8 == 1 ? x : (i % 8 == 2 ? 1.0f - x : y);
     x = i % 8 == 3 ? 0.0f : (i % 8 == 4 ? 1.0f : x);
     return hdrp_v2_make(x, i % 8 == 5 ? 1.0f : y);
@@ -155,7 +155,7 @@ static void hemisphere_cosine_error(acc* a)
 static void hemisphere_cosine_pdf_error(acc* a)
 {
     for (int i = 0; i < 100000; ++i) {
-        float c = (float)acc_log_uniform(a, 1e-30, 1.0);
+        float c = acc_float(acc_log_uniform(a, 1e-30, 1.0));
         ACC_ADD(a, acc_relative((double)hdrp_hemisphere_cosine_pdf(c), (double)c / PI),
                 "cosine %.9g", (double)c);
     }

@@ -145,8 +145,9 @@ static surface_map random_map(acc* a)
     m.pu = scaled(t, acc_log_uniform(a, 1e-3, 1e3));
     m.pv = scaled(mad(scaled(t, cos(angle)), b, sin(angle)), length(m.pu) * stretch);
     turn = acc_uniform(a, -1.0, 1.0) < 0.0 ? -turn : turn;
-    m.duv_dx = hdrp_v2_make((float)(step * cos(start)), (float)(step * sin(start)));
-    m.duv_dy = hdrp_v2_make((float)(step * cos(start + turn)), (float)(step * sin(start + turn)));
+    m.duv_dx = hdrp_v2_make(acc_float(step * cos(start)), acc_float(step * sin(start)));
+    m.duv_dy =
+        hdrp_v2_make(acc_float(step * cos(start + turn)), acc_float(step * sin(start + turn)));
     m.dp_dx = rounded(mad(scaled(m.pu, (double)m.duv_dx.x), m.pv, (double)m.duv_dx.y));
     m.dp_dy = rounded(mad(scaled(m.pu, (double)m.duv_dy.x), m.pv, (double)m.duv_dy.y));
     return m;
@@ -191,7 +192,7 @@ static void normal_from_xy_errors(acc* a, double smallest_z)
         double z = acc_uniform(a, smallest_z, 1.0), turn = acc_uniform(a, 0.0, 2.0 * PI);
         z = i % 2 && smallest_z == 0.0 ? z * z * z * z : z;
         double radius = sqrt(1.0 - z * z);
-        float x = (float)(radius * cos(turn)), y = (float)(radius * sin(turn));
+        float x = acc_float(radius * cos(turn)), y = acc_float(radius * sin(turn));
         double d = (double)x * (double)x + (double)y * (double)y;
         vec reference = vec_make((double)x, (double)y, sqrt(fmax(1.0 - d, 0.0)));
         ACC_ADD(a, degrees_between(hdrp_normal_from_xy(x, y), reference), "(%.9g, %.9g)", (double)x,
@@ -238,8 +239,9 @@ static void derivative_from_normal_error(acc* a)
 static void derivative_from_heights_error(acc* a)
 {
     for (int i = 0; i < 200000; ++i) {
-        float left = (float)acc_uniform(a, -1.0, 1.0), right = (float)acc_uniform(a, -1.0, 1.0);
-        float s = (float)acc_log_uniform(a, 1e-9, 1e9);
+        float left = acc_float(acc_uniform(a, -1.0, 1.0)),
+              right = acc_float(acc_uniform(a, -1.0, 1.0));
+        float s = acc_float(acc_log_uniform(a, 1e-9, 1e9));
         hdrp_v2 d = hdrp_derivative_from_heights(left, right, right, left, hdrp_v2_make(s, s));
         double slope = ((double)right - (double)left) / (2.0 * (double)s);
         ACC_ADD(a, fmax(acc_relative((double)d.x, slope), acc_relative((double)d.y, -slope)),
@@ -252,8 +254,8 @@ static void surface_gradient_derivative_error(acc* a)
     for (int i = 0; i < 200000; ++i) {
         hdrp_v3 t = rounded(scaled(direction(a), acc_log_uniform(a, 1e-2, 1e2)));
         hdrp_v3 b = rounded(scaled(direction(a), acc_log_uniform(a, 1e-2, 1e2)));
-        hdrp_v2 d =
-            hdrp_v2_make((float)acc_uniform(a, -128.0, 128.0), (float)acc_uniform(a, -1.0, 1.0));
+        hdrp_v2 d = hdrp_v2_make(acc_float(acc_uniform(a, -128.0, 128.0)),
+                                 acc_float(acc_uniform(a, -1.0, 1.0)));
         vec x = scaled(vec_of(t), (double)d.x), y = scaled(vec_of(b), (double)d.y);
         ACC_ADD(a,
                 distance(hdrp_surface_gradient_from_derivative(d, t, b), mad(x, y, 1.0)) /
@@ -295,7 +297,7 @@ static void triplanar_weights_error(acc* a)
 {
     for (int i = 0; i < 200000; ++i) {
         vec n = direction(a);
-        float sharpness = (float)acc_log_uniform(a, 1.0, 64.0);
+        float sharpness = acc_float(acc_log_uniform(a, 1.0, 64.0));
         hdrp_v3 v = rounded(scaled(n, acc_log_uniform(a, 1e-20, 1e20)));
         double l[3] = {log(fabs((double)v.x)), log(fabs((double)v.y)), log(fabs((double)v.z))};
         double top = fmax(l[0], fmax(l[1], l[2])), s = (double)sharpness;
@@ -319,7 +321,8 @@ static void surface_gradient_triplanar_error(acc* a)
         double slope[2] = {0.0, 0.0}, largest = 0.0;
         static const int look_up[3][2] = {{2, 1}, {0, 2}, {0, 1}};
         for (int k = 0; k < 3; ++k) {
-            d[k] = hdrp_v2_make((float)acc_uniform(a, -4.0, 4.0), (float)acc_uniform(a, -4.0, 4.0));
+            d[k] = hdrp_v2_make(acc_float(acc_uniform(a, -4.0, 4.0)),
+                                acc_float(acc_uniform(a, -4.0, 4.0)));
             double s = (double)d[k].x, r = (double)d[k].y, weight = vec_of(w).v[k];
             slope[0] += weight * (s * t.v[look_up[k][0]] + r * t.v[look_up[k][1]]);
             slope[1] += weight * (s * b.v[look_up[k][0]] + r * b.v[look_up[k][1]]);

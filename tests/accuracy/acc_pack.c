@@ -30,8 +30,8 @@ static void unorm_codes_error(acc* a)
             around(a, (double)code / last, unorm_at, bits);
         }
         for (int i = 0; i < 5000; ++i) {
-            unorm_at(a, (float)acc_uniform(a, -0.1, 1.1), bits);
-            unorm_at(a, (float)acc_log_uniform(a, 1e-44, 1.0), bits);
+            unorm_at(a, acc_float(acc_uniform(a, -0.1, 1.1)), bits);
+            unorm_at(a, acc_float(acc_log_uniform(a, 1e-44, 1.0)), bits);
         }
     }
 }
@@ -134,7 +134,7 @@ static void srgb8_codes_error(acc* a)
         around(a, linear_from_srgb((double)code / 255.0), srgb8_at, 8u);
     }
     for (int i = 0; i < 20000; ++i) {
-        srgb8_at(a, (float)acc_uniform(a, 0.0, 1.0), 8u);
+        srgb8_at(a, acc_float(acc_uniform(a, 0.0, 1.0)), 8u);
     }
 }
 
@@ -169,15 +169,15 @@ static void half_error(acc* a)
         around(a, 0.5 * (small_float(code, 10) + small_float(code + 1, 10)), half_at, 0u);
     }
     for (int i = 0; i < 100000; ++i) {
-        half_at(a, (float)acc_log_uniform(a, ldexp(1.0, -14), 65504.0), 0u);
+        half_at(a, acc_float(acc_log_uniform(a, ldexp(1.0, -14), 65504.0)), 0u);
     }
 }
 
 static void half_denormal_error(acc* a)
 {
     for (int i = 0; i < 200000; ++i) {
-        float x = (float)acc_log_uniform(a, 1e-10, ldexp(1.0, -14));
-        float y = (float)acc_uniform(a, 0.0, ldexp(1.0, -14));
+        float x = acc_float(acc_log_uniform(a, 1e-10, ldexp(1.0, -14)));
+        float y = acc_float(acc_uniform(a, 0.0, ldexp(1.0, -14)));
         ACC_ADD(a, fabs(small_float(hdrp_pack_half_from_float(x), 10) - (double)x), "x %.9g",
                 (double)x);
         ACC_ADD(a, fabs(small_float(hdrp_pack_half_from_float(y), 10) - (double)y), "x %.9g",
@@ -199,7 +199,7 @@ static void r11_error(acc* a)
         around(a, 0.5 * (small_float(code, 6) + small_float(code + 1, 6)), r11_at, 0u);
     }
     for (int i = 0; i < 100000; ++i) {
-        r11_at(a, (float)acc_log_uniform(a, ldexp(1.0, -14), 65024.0), 0u);
+        r11_at(a, acc_float(acc_log_uniform(a, ldexp(1.0, -14), 65024.0)), 0u);
     }
 }
 
@@ -216,7 +216,7 @@ static void b10_error(acc* a)
         around(a, 0.5 * (small_float(code, 5) + small_float(code + 1, 5)), b10_at, 0u);
     }
     for (int i = 0; i < 100000; ++i) {
-        b10_at(a, (float)acc_log_uniform(a, ldexp(1.0, -14), 64512.0), 0u);
+        b10_at(a, acc_float(acc_log_uniform(a, ldexp(1.0, -14), 64512.0)), 0u);
     }
 }
 
@@ -233,10 +233,10 @@ static void float_uint_error(acc* a, hdrp_u32 bits_i)
     double last = (double)((1u << (8u - bits_i)) - 1u);
     for (hdrp_u32 i = 0; i < (1u << bits_i); ++i) {
         for (int k = 0; k < 2000; ++k) {
-            float_uint_at(a, (float)((double)k / 1999.0), i, bits_i);
+            float_uint_at(a, acc_float((double)k / 1999.0), i, bits_i);
         }
         for (double code = 0.0; code < last; code += 1.0) {
-            float_uint_at(a, (float)((code + 0.5) / last), i, bits_i);
+            float_uint_at(a, acc_float((code + 0.5) / last), i, bits_i);
         }
     }
 }
@@ -282,7 +282,8 @@ static hdrp_v3 hard_normal(acc* a, int i, double steps)
         d[(i + 1) % 3] = copysign(acc_log_uniform(a, 1e-9, 2.0 / steps), d[(i + 1) % 3]);
     }
     double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-    return hdrp_v3_make((float)(d[0] / length), (float)(d[1] / length), (float)(d[2] / length));
+    return hdrp_v3_make(acc_float(d[0] / length), acc_float(d[1] / length),
+                        acc_float(d[2] / length));
 }
 
 typedef hdrp_u32 (*oct_encoder)(hdrp_v3 n, hdrp_u32 bits);
@@ -483,7 +484,7 @@ static void normal_buffer_roughness_error(acc* a)
 {
     hdrp_v3 up = hdrp_v3_make(0.0f, 0.0f, 1.0f);
     for (int i = 0; i < 100000; ++i) {
-        float r = (float)(i % 2 ? acc_uniform(a, 0.0, 1.0) : ((double)(i % 510) + 0.5) / 510.0);
+        float r = acc_float(i % 2 ? acc_uniform(a, 0.0, 1.0) : ((double)(i % 510) + 0.5) / 510.0);
         hdrp_u32 texel = hdrp_pack_rgba8_from_v4(hdrp_pack_normal_buffer_encode(up, r));
         double decoded = (double)hdrp_pack_normal_buffer_decode(hdrp_pack_v4_from_rgba8(texel))
                              .perceptual_roughness;
@@ -497,7 +498,7 @@ static void sss_mask_error(acc* a)
         hdrp_pack_sss s;
         s.diffuse_color = hdrp_v3_splat(0.25f);
         s.diffusion_profile = (hdrp_u32)i & 15u;
-        s.subsurface_mask = (float)acc_uniform(a, 0.0, 1.0);
+        s.subsurface_mask = acc_float(acc_uniform(a, 0.0, 1.0));
         hdrp_u32 texel = hdrp_pack_srgba8_from_linear(hdrp_pack_sss_buffer_encode(s));
         hdrp_pack_sss m = hdrp_pack_sss_buffer_decode(hdrp_pack_linear_from_srgba8(texel));
         double error = fabs((double)m.subsurface_mask - (double)s.subsurface_mask);
@@ -508,8 +509,8 @@ static void sss_mask_error(acc* a)
 
 static hdrp_v3 random_color(acc* a)
 {
-    return hdrp_v3_make((float)acc_uniform(a, 0.0, 1.0), (float)acc_uniform(a, 0.0, 1.0),
-                        (float)acc_uniform(a, 0.0, 1.0));
+    return hdrp_v3_make(acc_float(acc_uniform(a, 0.0, 1.0)), acc_float(acc_uniform(a, 0.0, 1.0)),
+                        acc_float(acc_uniform(a, 0.0, 1.0)));
 }
 
 /* A random valid material of the given feature. */
@@ -518,14 +519,14 @@ static hdrp_brdf_data random_material(acc* a, int i, hdrp_u32 features)
     hdrp_brdf_surface s = hdrp_brdf_surface_default();
     double t[3];
     s.base_color = random_color(a);
-    s.metallic = (float)acc_uniform(a, 0.0, 1.0);
+    s.metallic = acc_float(acc_uniform(a, 0.0, 1.0));
     s.normal = hard_normal(a, i, 2047.0);
     random_tangent(a, s.normal, t);
     s.tangent = hdrp_v3_make((float)t[0], (float)t[1], (float)t[2]);
-    s.anisotropy = (float)acc_uniform(a, -1.0, 1.0);
-    s.coat_mask = (float)acc_uniform(a, 0.0, 1.0);
-    s.film_ior = (float)acc_uniform(a, 1.0, 3.0);
-    s.film_thickness_nm = (float)acc_uniform(a, 0.0, 3000.0);
+    s.anisotropy = acc_float(acc_uniform(a, -1.0, 1.0));
+    s.coat_mask = acc_float(acc_uniform(a, 0.0, 1.0));
+    s.film_ior = acc_float(acc_uniform(a, 1.0, 3.0));
+    s.film_thickness_nm = acc_float(acc_uniform(a, 0.0, 3000.0));
     s.features = features | HDRP_BRDF_FEATURE_CLEAR_COAT;
     return hdrp_brdf_data_from_surface(s);
 }

@@ -7,6 +7,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#ifdef __GLIBC__
+#include <gnu/libc-version.h>
+#endif
 
 typedef struct acc_claim {
     const char* id;
@@ -113,6 +116,31 @@ float acc_float(double x)
     return (float)x;
 }
 
+/* What the digits of a measurement depend on beside the source: the compiler, and the libm that the
+ * references and the built-ins call, which glibc chooses by processor. */
+static void print_origin(FILE* csv)
+{
+#if defined(__clang__)
+    fprintf(csv, "# clang %d.%d.%d", __clang_major__, __clang_minor__, __clang_patchlevel__);
+#elif defined(__GNUC__)
+    fprintf(csv, "# gcc %d.%d.%d", __GNUC__, __GNUC_MINOR__, __GNUC_PATCHLEVEL__);
+#else
+    fprintf(csv, "# unknown compiler");
+#endif
+#if defined(__GLIBC__)
+    fprintf(csv, ", glibc %s", gnu_get_libc_version());
+#else
+    fprintf(csv, ", unknown libc");
+#endif
+#if defined(__x86_64__)
+    fprintf(csv, " on x86-64 %s FMA\n", __builtin_cpu_supports("fma") ? "with" : "without");
+#elif defined(__aarch64__)
+    fprintf(csv, " on aarch64\n");
+#else
+    fprintf(csv, " on an unknown architecture\n");
+#endif
+}
+
 static const acc_claim* find_claim(const char* id)
 {
     for (size_t i = 0; i < CLAIM_COUNT; ++i) {
@@ -176,6 +204,7 @@ int main(int argc, char** argv)
             fprintf(stderr, "accuracy: cannot write %s\n", argv[2]);
             return 1;
         }
+        print_origin(csv);
         fprintf(csv, "id,function,unit,claim,max,mean,count,non_finite\n");
         first = 3;
     }
