@@ -147,14 +147,20 @@ HDRP_TYPEDEF(hdrp_u32x4)
 #define HDRP_FLT_MAX     3.40282347e+38f  /* largest finite float */
 #define HDRP_FLT_EPSILON 1.1920928955e-7f /* distance from 1 to the next float, 2^-23 */
 
-/* HDRP_I_F(sqrt)(x) is the single-precision built-in or libm function. */
+/* HDRP_I_F(sqrt)(x) is the single-precision built-in or libm function. The errors stated below are
+ * those of the GNU C library; shading languages promise less, and other libraries may. */
 #ifdef HDRP_GPU
 #define HDRP_I_F(name) name
 #else
 #define HDRP_I_F(name) name##f
 #endif
 
-/** Square root; x >= 0. */
+/** Square root.
+ *  x        [0,inf]  anything
+ *  returns  [0,inf]
+ *  edges    -0 gives -0, negative and NaN give NaN
+ *  error    <= 0.5 ulp  @accuracy sqrt
+ *  source   IEEE 754-2008, section 5.4.1 */
 HDRP_FN float hdrp_sqrt(float x)
 {
     return HDRP_I_F(sqrt)(x);
@@ -178,37 +184,68 @@ HDRP_FN float hdrp_rsqrt(float x)
 #endif
 }
 
-/** Sine of x [rad]. */
+/** Sine.
+ *  x        finite  [rad]
+ *  returns  [-1,1]
+ *  edges    infinities and NaN give NaN; see hdrp_sincos, which vectorises
+ *  error    <= 0.6 ulp  @accuracy sin
+ *  source   the built-in of the language */
 HDRP_FN float hdrp_sin(float x)
 {
     return HDRP_I_F(sin)(x);
 }
 
-/** Cosine of x [rad]. */
+/** Cosine.
+ *  x        finite  [rad]
+ *  returns  [-1,1]
+ *  edges    infinities and NaN give NaN; see hdrp_sincos, which vectorises
+ *  error    <= 0.6 ulp  @accuracy cos
+ *  source   the built-in of the language */
 HDRP_FN float hdrp_cos(float x)
 {
     return HDRP_I_F(cos)(x);
 }
 
-/** Tangent of x [rad]. */
+/** Tangent.
+ *  x        finite  [rad]
+ *  returns  finite
+ *  edges    infinities and NaN give NaN
+ *  error    <= 1.4 ulp  @accuracy tan
+ *  source   the built-in of the language */
 HDRP_FN float hdrp_tan(float x)
 {
     return HDRP_I_F(tan)(x);
 }
 
-/** Arc sine [rad]; x in [-1,1]. */
+/** Arc sine.
+ *  x        [-1,1]                        sine
+ *  returns  [-HDRP_HALF_PI,HDRP_HALF_PI]  [rad]
+ *  edges    outside and NaN give NaN
+ *  error    <= 1 ulp  @accuracy asin
+ *  source   the built-in of the language */
 HDRP_FN float hdrp_asin(float x)
 {
     return HDRP_I_F(asin)(x);
 }
 
-/** Arc cosine [rad]; x in [-1,1]. */
+/** Arc cosine.
+ *  x        [-1,1]       cosine
+ *  returns  [0,HDRP_PI]  [rad]
+ *  edges    outside and NaN give NaN
+ *  error    <= 1 ulp  @accuracy acos
+ *  source   the built-in of the language */
 HDRP_FN float hdrp_acos(float x)
 {
     return HDRP_I_F(acos)(x);
 }
 
-/** Angle of the point (x, y) from the +x axis, in [-pi, pi]. GPUs leave (0, 0) undefined. */
+/** Angle of the point (x, y) from the +x axis.
+ *  y        finite              second coordinate
+ *  x        finite              first coordinate
+ *  returns  [-HDRP_PI,HDRP_PI]  [rad]
+ *  edges    signs of zeros count in C; shading languages leave (0, 0) undefined
+ *  error    <= 1.6 ulp  @accuracy atan2
+ *  source   the built-in of the language */
 HDRP_FN float hdrp_atan2(float y, float x)
 {
 #ifdef HDRP_GLSL
@@ -218,31 +255,58 @@ HDRP_FN float hdrp_atan2(float y, float x)
 #endif
 }
 
-/** e to the power x. */
+/** e to the power x.
+ *  x        [-inf,inf]  exponent
+ *  returns  [0,inf]
+ *  edges    infinite from 88.73 on, 0 below -104; NaN gives NaN
+ *  error    <= 0.6 ulp where the result is a normal float  @accuracy exp
+ *  source   the built-in of the language */
 HDRP_FN float hdrp_exp(float x)
 {
     return HDRP_I_F(exp)(x);
 }
 
-/** 2 to the power x. */
+/** 2 to the power x.
+ *  x        [-inf,inf]  exponent
+ *  returns  [0,inf]
+ *  edges    infinite from 128 on, 0 below -150; NaN gives NaN
+ *  error    <= 0.6 ulp where the result is a normal float  @accuracy exp2
+ *  source   the built-in of the language */
 HDRP_FN float hdrp_exp2(float x)
 {
     return HDRP_I_F(exp2)(x);
 }
 
-/** Natural logarithm; x > 0. */
+/** Natural logarithm.
+ *  x        (0,inf]     anything
+ *  returns  [-104,inf]
+ *  edges    in C 0 gives -infinity, negative and NaN give NaN; shading languages define neither
+ *  error    <= 1 ulp  @accuracy log
+ *  source   the built-in of the language */
 HDRP_FN float hdrp_log(float x)
 {
     return HDRP_I_F(log)(x);
 }
 
-/** Logarithm to the base 2; x > 0. */
+/** Logarithm to the base 2.
+ *  x        (0,inf]     anything
+ *  returns  [-149,inf]
+ *  edges    in C 0 gives -infinity, negative and NaN give NaN; shading languages define neither
+ *  error    <= 1 ulp  @accuracy log2
+ *  source   the built-in of the language */
 HDRP_FN float hdrp_log2(float x)
 {
     return HDRP_I_F(log2)(x);
 }
 
-/** x to the power y; x > 0, since shading languages define no more. */
+/** x to the power y.
+ *  x        (0,FLT_MAX]  base
+ *  y        finite       exponent
+ *  returns  [0,inf]
+ *  edges    overflow gives infinity; a base of 0 and negative ones are undefined in shading
+ *           languages
+ *  error    <= 1 ulp where the result is a normal float  @accuracy pow
+ *  source   the built-in of the language */
 HDRP_FN float hdrp_pow(float x, float y)
 {
     return HDRP_I_F(pow)(x, y);
@@ -538,13 +602,24 @@ HDRP_FN hdrp_v3 hdrp_v3_cross(hdrp_v3 a, hdrp_v3 b)
     return hdrp_v3_make(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
 
-/** Euclidean length; finite for components below 1e19. */
+/** Euclidean length.
+ *  v        [-1e19,1e19]  any direction
+ *  returns  [0,inf)
+ *  edges    lengths below 1e-18 lose digits, below 1e-23 everything
+ *  error    <= 2 ulp for lengths in [1e-18,1e19]  @accuracy v3_length
+ *  source   definition */
 HDRP_FN float hdrp_v3_length(hdrp_v3 v)
 {
     return hdrp_sqrt(hdrp_v3_dot(v, v));
 }
 
-/** v over its length; the length must lie in [1e-18, 1e18]. See hdrp_normalize_or otherwise. */
+/** v over its length.
+ *  v         [-1e18,1e18]  any direction; see hdrp_normalize_or for other lengths
+ *  returns   unit
+ *  requires  hdrp_v3_dot(v, v) >= 1e-36f; a length of at least 1e-18
+ *  edges     none: undefined where the length is 0
+ *  error     <= 2e-7 absolute, per component  @accuracy v3_normalize
+ *  source    definition */
 HDRP_FN hdrp_v3 hdrp_v3_normalize(hdrp_v3 v)
 {
     return hdrp_v3_scale(v, 1.0f / hdrp_v3_length(v));

@@ -49,6 +49,8 @@ FORBIDDEN_CALLS = ("malloc calloc realloc free alloca printf fprintf puts abort 
 SCALARS = ("float", "double", "int", "unsigned", "hdrp_u32", "uint8_t", "uint16_t", "uint32_t",
            "uint64_t", "int32_t", "int64_t")
 VECTORS = ("hdrp_v2", "hdrp_v3", "hdrp_v4", "hdrp_u32x4")
+EXACT_BUILT_INS = {"floor", "fabs"}
+CODEC = re.compile(r"_from_|encode|decode|_target|_code")
 ABSOLUTE_PATH = re.compile(r"(?<![\w.~$)}/])/(?:home|work|root|Users|tmp|mnt|media)/\w|"
                            r"(?<!\w)[A-Z]:\\\\?\w")
 FLOAT_LITERAL = re.compile(r"(?<![\w.])(?:\d+\.\d*(?:[eE][+-]?\d+)?|\.\d+(?:[eE][+-]?\d+)?|"
@@ -207,6 +209,69 @@ def check_claims(tree):
         if f'"{claim.id}"' not in registry:
             tree.report(claim.header, claim.line,
                         f"@accuracy {claim.id} has no entry in tests/accuracy/acc_*.c")
+
+
+def check_primitives(tree):
+    """One sentence may document what does no more than +, -, *, compare and select. Rounding of
+    another kind, or an approximation, has an error to be stated."""
+    claimed = {claim.function for claim in hdrp_api.claims(tree.root)}
+    for header, function in tree.functions():
+        if not (function.is_formula and function.is_public and function.is_primitive):
+            continue
+        calls = set(re.findall(r"\bhdrp_\w+(?=\()", function.body)) & claimed
+        built_in = set(re.findall(r"\bHDRP_I_F\((\w+)\)", function.body)) - EXACT_BUILT_INS
+        if "/" in function.body or built_in or calls:
+            what = ", ".join(sorted(calls | built_in)) or "a division"
+            tree.report(header.name, function.line, f"{function.name} uses {what}: one sentence is "
+                        "not enough, it needs an 'error' line")
+
+
+def variants(names):
+    """The names of which there are several forms: with and without _fast or _exact."""
+    forms = {}
+    for name in names:
+        forms.setdefault(re.sub(r"_(fast|exact)$", "", name), set()).add(name)
+    return set().union(*(f for f in forms.values() if len(f) > 1))
+
+
+def check_reasons(tree):
+    """A form of which there are several, and a codec, has a claim or leads to one: 'none:' may say
+    that it is exact, or name the functions that it is made of. What it names must exist."""
+    claimed = {claim.function for claim in hdrp_api.claims(tree.root)}
+    formulas = {f.name: (h, f) for h, f in tree.functions() if f.is_formula and f.is_public}
+    reasons = {name: next((t for t in f.doc.all("error") if t.startswith("none:")), None)
+               for name, (_, f) in formulas.items() if f.doc}
+
+    def leads_to_a_claim(name, seen=()):
+        reason = reasons.get(name)
+        return name in claimed or bool(reason) and name not in seen and (
+            bool(re.match(r"none:\s+exact\b", reason)) or
+            any(leads_to_a_claim(other, seen + (name,))
+                for other in re.findall(r"\bhdrp_\w+", reason)))
+    several = variants(formulas)
+    for name, (header, function) in formulas.items():
+        for other in re.findall(r"\bhdrp_\w+", reasons.get(name) or ""):
+            if other not in formulas:
+                tree.report(header.name, function.line,
+                            f"{name}: the reason names {other}, which is no formula")
+        is_codec = header.module == "pack" and CODEC.search(name)
+        if (name in several or is_codec) and not leads_to_a_claim(name):
+            tree.report(header.name, function.line, f"{name} is "
+                        f"{'a codec' if is_codec else 'one of several forms'}: it needs a claim, or "
+                        "a reason that is 'exact' or names a function with a claim")
+
+
+def check_sweeps(tree):
+    """Every formula of one float is swept over all floats, unless the scan cannot call it either."""
+    text = "".join(p.read_text(encoding="utf-8")
+                   for p in sorted(tree.root.glob("tests/exhaustive/*.c")))
+    swept = set(re.findall(r"\bhdrp_\w+", hdrp_api.blank_comments(text, strings=False)))
+    for header, function in tree.functions():
+        if function.is_formula and function.is_public and not function.is_primitive and \
+                [p.type for p in function.parameters] == ["float"] and \
+                not (function.doc and function.doc.get("scan")) and function.name not in swept:
+            tree.report(header.name, function.line,
+                        f"{function.name} takes one float and is in no sweep of tests/exhaustive")
 
 
 def check_coverage(tree):
@@ -459,7 +524,8 @@ def check_index(tree):
                         f"{'not current' if where else 'missing'}: run tools/api_check.py --write")
 
 
-CHECKS = [check_docstrings, check_claims, check_coverage, check_prefixes, check_macros,
+CHECKS = [check_docstrings, check_claims, check_primitives, check_reasons, check_sweeps,
+          check_coverage, check_prefixes, check_macros,
           check_double_underscores, check_keywords, check_void_parameters, check_private_use,
           check_lengths, check_literals, check_version, check_includes, check_state, check_paths,
           check_index]

@@ -67,7 +67,39 @@ static void basis_error(acc* a)
     }
 }
 
+static void v3_length_error(acc* a)
+{
+    for (int i = 0; i < 300000; ++i) {
+        double d[3], length = acc_log_uniform(a, 1.1e-18, 9e18);
+        acc_direction(a, d);
+        hdrp_v3 v = hdrp_v3_make(acc_float(d[0] * length), acc_float(d[1] * length),
+                                 acc_float(d[2] * length));
+        ACC_ADD(
+            a,
+            acc_ulp((double)hdrp_v3_length(v), hypot(hypot((double)v.x, (double)v.y), (double)v.z)),
+            "v = (%.9g, %.9g, %.9g)", (double)v.x, (double)v.y, (double)v.z);
+    }
+}
+
+static void v3_normalize_error(acc* a)
+{
+    for (int i = 0; i < 300000; ++i) {
+        double d[3], length = acc_log_uniform(a, 1.1e-18, 9e17);
+        acc_direction(a, d);
+        hdrp_v3 v = hdrp_v3_make(acc_float(d[0] * length), acc_float(d[1] * length),
+                                 acc_float(d[2] * length));
+        double x = (double)v.x, y = (double)v.y, z = (double)v.z, h = hypot(hypot(x, y), z);
+        hdrp_v3 n = hdrp_v3_normalize(v);
+        ACC_ADD(
+            a,
+            max3(fabs((double)n.x - x / h), fabs((double)n.y - y / h), fabs((double)n.z - z / h)),
+            "v = (%.9g, %.9g, %.9g)", x, y, z);
+    }
+}
+
 const acc_entry acc_math[] = {
+    {"v3_length", v3_length_error},
+    {"v3_normalize", v3_normalize_error},
     {"normalize_or", normalize_or_error},
     {"basis", basis_error},
     {NULL, NULL},

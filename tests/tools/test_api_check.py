@@ -104,6 +104,73 @@ class ApiCheck(trees.TreeTest):
         self.broken("hdrp_math.h", "none: a definition", "<= 1 ulp  @accuracy disk",
                     "@accuracy disk has no entry")
 
+    def test_a_primitive_does_not_round_unseen(self):
+        self.broken("hdrp_math.h", "return sqrtf(x)", "return HDRP_I_F(sqrt)(x)",
+                    "hdrp_sqrt uses sqrt: one sentence is not enough")
+        self.broken("hdrp_math.h", "return sqrtf(x)", "return 1.0f / x",
+                    "hdrp_sqrt uses a division: one sentence is not enough")
+        self.broken("hdrp_math.h", "return sqrtf(x)", "return HDRP_I_F(floor)(x)")
+
+    def test_a_primitive_that_calls_what_has_an_error_states_its_own(self):
+        self.change("hdrp_math.h", "error    none: a definition",
+                    "error    <= 1e-7 relative  @accuracy disk")
+        self.change("tests/accuracy/acc_brdf.c", '{"brdf_inverse"', '{"disk", g}, {"brdf_inverse"')
+        self.expect()
+        self.change("hdrp_math.h", "return sqrtf(x)", "return hdrp_disk(x)")
+        self.expect("hdrp_sqrt uses hdrp_disk: one sentence is not enough")
+
+    def with_fast_form(self, reason):
+        """hdrp_disk and hdrp_disk_fast, whose error lines are the reason."""
+        self.setUp()
+        begin = trees.MATH.index("/** Radius of a point")
+        copy = trees.MATH[begin:trees.MATH.index("#endif", begin)]
+        self.change("hdrp_math.h", copy, copy + copy.replace("hdrp_disk", "hdrp_disk_fast"))
+        text = (self.root / "hdrp_math.h").read_text(encoding="utf-8")
+        self.write("hdrp_math.h", text.replace("none: a definition", reason)
+                   .replace("sampling: disk", "sampling: disk disk_fast"))
+        self.change("tests/unit/test_brdf.c", "hdrp_disk(1.0f)",
+                    "hdrp_disk(1.0f) == hdrp_disk_fast(1.0f)")
+        self.change("tests/exhaustive/sweeps.c", "EX_SWEEP(hdrp_disk, d)",
+                    "EX_SWEEP(hdrp_disk, d), EX_SWEEP(hdrp_disk_fast, d)")
+
+    def test_one_of_several_forms_has_a_claim_or_leads_to_one(self):
+        self.with_fast_form("none: a definition")
+        self.expect("hdrp_disk is one of several forms", "hdrp_disk_fast is one of several forms")
+        self.with_fast_form("none: exact")
+        self.expect()
+        self.with_fast_form("none: delegates to hdrp_disk_fast")
+        self.expect("hdrp_disk is one of several forms", "hdrp_disk_fast is one of several forms")
+
+    def test_a_codec_has_a_claim_or_leads_to_one(self):
+        codec = ("/** A code.\n *  x        any  value\n *  returns  any\n *  edges    none\n"
+                 " *  error    {}\n *  source   arithmetic */\n"
+                 "HDRP_FN float hdrp_pack_code_from_value(hdrp_v2 x)\n{{\n    return x.x;\n}}\n\n")
+        header = trees.BRDF[:trees.BRDF.index("struct hdrp_brdf_pair")].replace("/* Two weights. */\n",
+                                                                               "")
+        for reason, wrong in (("none: a definition", 1), ("none: exact for every code", 0),
+                              ("none: hdrp_brdf_inverse of each", 0)):
+            with self.subTest(reason=reason):
+                self.setUp()
+                self.write("hdrp_pack.h", header.replace("hdrp_brdf_", "hdrp_pack_")
+                           .replace("brdf.h", "pack.h").replace("HDRP_BRDF", "HDRP_PACK")
+                           .replace("lobes: inverse mix", "lobes: code_from_value")
+                           .replace(" *   algorithm layer: bake\n", "") + codec.format(reason) +
+                           "#endif\n")
+                self.change("tests/unit/test_brdf.c", "int main",
+                            "float f = hdrp_pack_code_from_value(v);\nint main")
+                self.expect(*["hdrp_pack_code_from_value is a codec"] * wrong)
+
+    def test_a_reason_names_formulas_that_exist(self):
+        self.broken("hdrp_math.h", "none: a definition", "none: delegates to hdrp_circle",
+                    "hdrp_disk: the reason names hdrp_circle, which is no formula")
+
+    def test_a_formula_of_one_float_is_swept(self):
+        self.broken("tests/exhaustive/sweeps.c", "EX_SWEEP(hdrp_disk, d), ", "",
+                    "hdrp_disk takes one float and is in no sweep")
+        self.change("hdrp_math.h", " *  source   Shirley",
+                    " *  scan     none: a reason\n *  source   Shirley")
+        self.expect()
+
     def test_algorithm_functions_say_what_can_go_wrong_and_who_owns_memory(self):
         self.broken("hdrp_brdf.h", " *  edges    on an error the table is untouched */", " */",
                     "neither 'edges' nor 'errors'")

@@ -164,8 +164,10 @@ int main(void)
 REGISTRY = 'const acc_entry acc_brdf[] = {{"brdf_inverse", f}}; /* hdrp_brdf_inverse */\n' \
            'int used = hdrp_brdf_inverse(1.0f);\n'
 
+SWEEPS = 'const ex_sweep ex_sweeps[] = {EX_SWEEP(hdrp_disk, d), EX_SWEEP(hdrp_brdf_inverse, i)};\n'
+
 FILES = {"hdrp_math.h": MATH, "hdrp_brdf.h": BRDF, "tests/unit/test_brdf.c": TESTS,
-         "tests/accuracy/acc_brdf.c": REGISTRY}
+         "tests/accuracy/acc_brdf.c": REGISTRY, "tests/exhaustive/sweeps.c": SWEEPS}
 
 
 class TreeTest(unittest.TestCase):
