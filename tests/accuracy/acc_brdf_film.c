@@ -9,11 +9,12 @@
 
 #include "cie_observers.h"
 #include "hdrp_brdf_lobes.h"
+#include "published_forms.h"
 
 #define PI         3.14159265358979323846
 #define FIRST_NM   360
 #define LAST_NM    830
-#define COUNT      3000
+#define COUNT      9000
 #define MAX_F0     0.999 /* the amplitude of a perfect mirror leaves nothing to interfere */
 #define TYPICAL_NM 1200.0
 
@@ -102,6 +103,14 @@ static void reference_color(film_input in, double rgb[3])
     }
 }
 
+/* The worst that searches found, for each of the three forms. */
+#define HARDEST 3
+static const film_input hardest[HARDEST] = {
+    {0.0764717013f, 1.00006902f, 2.88841796f, 55.393856f, 0.961139858f},
+    {0.0385589488f, 1.00011158f, 2.64977074f, 2740.57886f, 0.954440951f},
+    {0.00739906449f, 1.0f, 1.27751493f, 395.227631f, 0.970750988f},
+};
+
 /* The whole domain, evenly, and its corners: grazing views, metals, thick and thin films. Light
  * comes from air, through the outer medium. */
 static film_input random_film(acc* a, int i)
@@ -117,7 +126,15 @@ static film_input random_film(acc* a, int i)
     f.f0 = acc_float(i % 2   ? acc_uniform(a, 0.0, MAX_F0)
                      : i % 4 ? 0.04
                              : acc_uniform(a, 0.9, MAX_F0));
+    if (i < HARDEST) {
+        f = hardest[i];
+    }
     return f;
+}
+
+static double color_difference(hdrp_v3 m, const double r[3])
+{
+    return fmax(fmax(fabs((double)m.x - r[0]), fabs((double)m.y - r[1])), fabs((double)m.z - r[2]));
 }
 
 typedef hdrp_v3 film_function(float, float, float, float, hdrp_v3);
@@ -135,8 +152,7 @@ static double film_error(acc* a, int i, film_function* f, film_input* in)
     }
     *in = inputs[i];
     hdrp_v3 m = f(in->cosine, in->outer, in->ior, in->nm, hdrp_v3_splat(in->f0));
-    const double* r = references[i];
-    return fmax(fmax(fabs((double)m.x - r[0]), fabs((double)m.y - r[1])), fabs((double)m.z - r[2]));
+    return color_difference(m, references[i]);
 }
 
 static void largest(acc* a, film_function* f)
@@ -187,6 +203,70 @@ static void film_fast(acc* a)
 static void film_fast_mean(acc* a)
 {
     mean(a, hdrp_brdf_film_fast);
+}
+
+/* Films as the talk makes them, one thickness t for IOR and thickness, over bases of one F0. */
+static film_input film_of_talk(acc* a, int i, float f0)
+{
+    film_input f;
+    double t = acc_uniform(a, 0.0, 1.0), c = acc_uniform(a, 0.0, 1.0);
+    f.cosine = acc_float(i % 5 ? c : c * c * c + 1e-4 * (1.0 - c));
+    f.outer = 1.0f;
+    f.ior = acc_float(2.0 - t);
+    f.nm = acc_float(1500.0 * t / (2.0 - t));
+    f.f0 = f0;
+    return f;
+}
+
+/* Largest and mean error of the talk's form and of a film, on the same films. */
+static void compare_with_talk(acc* a, float f0, film_function* f, double talk[2], double ours[2])
+{
+    const int count = 2000;
+    talk[0] = talk[1] = ours[0] = ours[1] = 0.0;
+    for (int i = 0; i < count; ++i) {
+        double reference[3];
+        film_input in = film_of_talk(a, i, f0);
+        reference_color(in, reference);
+        for (int k = 0; k < 2; ++k) {
+            double* sum = k ? ours : talk;
+            hdrp_v3 m =
+                (k ? f : published_film)(in.cosine, in.outer, in.ior, in.nm, hdrp_v3_splat(in.f0));
+            double error = color_difference(m, reference);
+            sum[0] = fmax(sum[0], error);
+            sum[1] += error / count;
+        }
+    }
+}
+
+static void film_to_talk(acc* a, film_function* f, int which)
+{
+    const float f0s[] = {0.02f, 0.04f, 0.1f, 0.2f, 0.5f, 0.7f};
+    for (int i = 0; i < 6; ++i) {
+        double talk[2], ours[2];
+        compare_with_talk(a, f0s[i], f, talk, ours);
+        ACC_ADD(a, ours[which] / talk[which], "F0 %.3g: %.4g against %.4g", (double)f0s[i],
+                ours[which], talk[which]);
+    }
+}
+
+static void film_to_talk_largest(acc* a)
+{
+    film_to_talk(a, hdrp_brdf_film, 0);
+}
+
+static void film_to_talk_mean(acc* a)
+{
+    film_to_talk(a, hdrp_brdf_film, 1);
+}
+
+static void film_fast_to_talk_largest(acc* a)
+{
+    film_to_talk(a, hdrp_brdf_film_fast, 0);
+}
+
+static void film_fast_to_talk_mean(acc* a)
+{
+    film_to_talk(a, hdrp_brdf_film_fast, 1);
 }
 
 static void compare_airy(acc* a, film_input in, float base)
@@ -247,6 +327,10 @@ const acc_entry acc_brdf_film[] = {
     {"brdf_film_exact_mean", film_exact_mean},
     {"brdf_film_fast", film_fast},
     {"brdf_film_fast_mean", film_fast_mean},
+    {"brdf_film_to_talk", film_to_talk_largest},
+    {"brdf_film_to_talk_mean", film_to_talk_mean},
+    {"brdf_film_fast_to_talk", film_fast_to_talk_largest},
+    {"brdf_film_fast_to_talk_mean", film_fast_to_talk_mean},
     {"brdf_film_airy", film_airy},
     {"brdf_film_airy_inside", film_airy_inside},
     {"brdf_film_airy_critical", film_airy_critical},
