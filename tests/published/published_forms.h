@@ -64,6 +64,12 @@ static inline hdrp_brdf_fgd published_fgd(float n_dot_v, float perceptual_roughn
     return f;
 }
 
+/* Abramowitz and Stegun 1964, "Handbook of Mathematical Functions", 4.4.45, for x in [0,1]. */
+static inline float published_acos(float x)
+{
+    return sqrtf(1.0f - x) * (1.5707288f + x * (-0.2121144f + x * (0.0742610f + x * -0.0187293f)));
+}
+
 /* A float with bits_lost bits of its mantissa cut off instead of rounded, as packing by shifts and
  * masks does to normal numbers. */
 static inline float published_truncated(float x, hdrp_u32 bits_lost)
