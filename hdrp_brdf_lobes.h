@@ -1091,52 +1091,133 @@ HDRP_FN hdrp_v3 hdrp_brdf_diffuse(hdrp_brdf_fgd_fit fit, float n_dot_v, float n_
  * the reflectance is a series in the order m of the path difference; the spectrum enters only
  * through the cosine transform of the colour-matching functions, here sums of Gaussians. */
 
-/** Response of linear Rec.709 to a spectrum cos(2 pi opd / wavelength), three Gaussians.
- *  Equal-energy white gives (1,1,1), and so does opd_um = 0. The colour-matching functions are
- *  those of CIE 1931, fitted in wavenumber by tools/fit_brdf.py: 0.12 of worst error, 0.03 rms. */
-HDRP_FN hdrp_v3 hdrp_i_brdf_film_spectrum(float opd_um)
+/* One Gaussian of the response to a spectrum cos(2 pi opd / wavelength), at one order m of the path
+ * difference: envelope * now. Each order follows from the last without exponential and cosine. */
+struct hdrp_i_brdf_wave {
+    float cosine;   /* of the phase phi of the first order */
+    float now;      /* cos(m phi) */
+    float before;   /* cos((m - 1) phi) */
+    float envelope; /* g^(m^2), where g is the damping of the first order */
+    float decay;    /* g^(2 m + 1), what the next order loses */
+    float square;   /* g^2 */
+};
+HDRP_TYPEDEF(hdrp_i_brdf_wave)
+
+/** Order 1 of a Gaussian in wavenumber: width [um^-2] and frequency [um^-1] of its transform. */
+HDRP_FN hdrp_i_brdf_wave hdrp_i_brdf_wave_make(float opd_um, float width, float frequency)
 {
-    float o2 = opd_um * opd_um;
-    float a = hdrp_exp(-0.157541568f * o2) * hdrp_cos(10.4604743f * opd_um);
-    float b = hdrp_exp(-0.368619415f * o2) * hdrp_cos(11.342566f * opd_um);
-    float c = hdrp_exp(-0.252452653f * o2) * hdrp_cos(13.9199993f * opd_um);
-    return hdrp_v3_make(1.89250954f * a - 0.923264807f * b + 0.0307552715f * c,
-                        -0.554621099f * a + 1.69194072f * b - 0.13731962f * c,
-                        0.00870222753f * a - 0.175570875f * b + 1.16686865f * c);
+    hdrp_i_brdf_wave w;
+    w.cosine = hdrp_cos(frequency * opd_um);
+    w.now = w.cosine;
+    w.before = 1.0f;
+    w.envelope = hdrp_exp(-width * opd_um * opd_um);
+    w.square = w.envelope * w.envelope;
+    w.decay = w.square * w.envelope;
+    return w;
 }
 
-/** The same with six Gaussians: 0.008 of worst error. */
-HDRP_FN hdrp_v3 hdrp_i_brdf_film_spectrum_exact(float opd_um)
+HDRP_FN hdrp_i_brdf_wave hdrp_i_brdf_wave_next(hdrp_i_brdf_wave w)
 {
-    float o2 = opd_um * opd_um;
-    float a = hdrp_exp(-0.107845039f * o2) * hdrp_cos(10.3352171f * opd_um);
-    float b = hdrp_exp(-0.211596315f * o2) * hdrp_cos(11.0887082f * opd_um);
-    float c = hdrp_exp(-0.124406963f * o2) * hdrp_cos(11.9446375f * opd_um);
-    float d = hdrp_exp(-0.153789368f * o2) * hdrp_cos(13.1973182f * opd_um);
-    float e = hdrp_exp(-0.0475148514f * o2) * hdrp_cos(13.5356048f * opd_um);
-    float f = hdrp_exp(-0.129011908f * o2) * hdrp_cos(14.2566701f * opd_um);
-    float red = 1.27137633f * a + 0.157041905f * b - 0.422586948f * c;
-    float green = -0.334036346f * a + 0.920639558f * b + 0.454924698f * c;
-    float blue = 0.0120286391f * a - 0.126506741f * b - 0.0349705175f * c;
-    return hdrp_v3_make(red - 0.116456445f * d + 0.0280163089f * e + 0.0826088471f * f,
-                        green + 0.0911263336f * d - 0.0370514955f * e - 0.0956027482f * f,
-                        blue + 0.289599047f * d + 0.158685173f * e + 0.701164399f * f);
+    float now = w.now;
+    w.now = 2.0f * w.cosine * now - w.before;
+    w.before = now;
+    w.envelope *= w.decay;
+    w.decay *= w.square;
+    return w;
+}
+
+/** Sum of this and all later orders, weighted by 1, x, x^2 ..., as if each decayed as this one: a
+ *  geometric series of rotating vectors. Exact without path difference. */
+HDRP_FN float hdrp_i_brdf_wave_tail(hdrp_i_brdf_wave w, float x)
+{
+    float a = x * w.decay;
+    float d = hdrp_sq(1.0f - a) + 2.0f * a * (1.0f - w.cosine);
+    return w.envelope * (w.now - a * w.before) / (d + HDRP_FLT_MIN);
+}
+
+/* Rows of the matrix from Gaussians to linear Rec.709. Equal-energy white gives (1,1,1), and so
+ * does no path difference. The colour-matching functions are those of CIE 1931, fitted in
+ * wavenumber by tools/fit_brdf.py: 0.12 of worst error, 0.03 rms. */
+#define HDRP_I_BRDF_FILM_RED   hdrp_v3_make(1.89250954f, -0.923264807f, 0.0307552715f)
+#define HDRP_I_BRDF_FILM_GREEN hdrp_v3_make(-0.554621099f, 1.69194072f, -0.13731962f)
+#define HDRP_I_BRDF_FILM_BLUE  hdrp_v3_make(0.00870222753f, -0.175570875f, 1.16686865f)
+
+struct hdrp_i_brdf_waves {
+    hdrp_i_brdf_wave a;
+    hdrp_i_brdf_wave b;
+    hdrp_i_brdf_wave c;
+};
+HDRP_TYPEDEF(hdrp_i_brdf_waves)
+
+HDRP_FN hdrp_i_brdf_waves hdrp_i_brdf_waves_make(float opd_um)
+{
+    hdrp_i_brdf_waves w;
+    w.a = hdrp_i_brdf_wave_make(opd_um, 0.157541568f, 10.4604743f);
+    w.b = hdrp_i_brdf_wave_make(opd_um, 0.368619415f, 11.342566f);
+    w.c = hdrp_i_brdf_wave_make(opd_um, 0.252452653f, 13.9199993f);
+    return w;
+}
+
+HDRP_FN hdrp_i_brdf_waves hdrp_i_brdf_waves_next(hdrp_i_brdf_waves w)
+{
+    w.a = hdrp_i_brdf_wave_next(w.a);
+    w.b = hdrp_i_brdf_wave_next(w.b);
+    w.c = hdrp_i_brdf_wave_next(w.c);
+    return w;
+}
+
+HDRP_FN hdrp_v3 hdrp_i_brdf_waves_values(hdrp_i_brdf_waves w)
+{
+    return hdrp_v3_make(w.a.envelope * w.a.now, w.b.envelope * w.b.now, w.c.envelope * w.c.now);
+}
+
+HDRP_FN hdrp_v3 hdrp_i_brdf_waves_tail(hdrp_i_brdf_waves w, float x)
+{
+    return hdrp_v3_make(hdrp_i_brdf_wave_tail(w.a, x), hdrp_i_brdf_wave_tail(w.b, x),
+                        hdrp_i_brdf_wave_tail(w.c, x));
+}
+
+/* The same with six Gaussians, in two halves: 0.008 of worst error. */
+#define HDRP_I_BRDF_FILM_RED_1   hdrp_v3_make(1.27137633f, 0.157041905f, -0.422586948f)
+#define HDRP_I_BRDF_FILM_RED_2   hdrp_v3_make(-0.116456445f, 0.0280163089f, 0.0826088471f)
+#define HDRP_I_BRDF_FILM_GREEN_1 hdrp_v3_make(-0.334036346f, 0.920639558f, 0.454924698f)
+#define HDRP_I_BRDF_FILM_GREEN_2 hdrp_v3_make(0.0911263336f, -0.0370514955f, -0.0956027482f)
+#define HDRP_I_BRDF_FILM_BLUE_1  hdrp_v3_make(0.0120286391f, -0.126506741f, -0.0349705175f)
+#define HDRP_I_BRDF_FILM_BLUE_2  hdrp_v3_make(0.289599047f, 0.158685173f, 0.701164399f)
+
+HDRP_FN hdrp_i_brdf_waves hdrp_i_brdf_waves_make_1(float opd_um)
+{
+    hdrp_i_brdf_waves w;
+    w.a = hdrp_i_brdf_wave_make(opd_um, 0.107845039f, 10.3352171f);
+    w.b = hdrp_i_brdf_wave_make(opd_um, 0.211596315f, 11.0887082f);
+    w.c = hdrp_i_brdf_wave_make(opd_um, 0.124406963f, 11.9446375f);
+    return w;
+}
+
+HDRP_FN hdrp_i_brdf_waves hdrp_i_brdf_waves_make_2(float opd_um)
+{
+    hdrp_i_brdf_waves w;
+    w.a = hdrp_i_brdf_wave_make(opd_um, 0.153789368f, 13.1973182f);
+    w.b = hdrp_i_brdf_wave_make(opd_um, 0.0475148514f, 13.5356048f);
+    w.c = hdrp_i_brdf_wave_make(opd_um, 0.129011908f, 14.2566701f);
+    return w;
 }
 
 /* One interface for one polarisation: amplitude and transmitted share. */
 struct hdrp_i_brdf_amplitude {
     float r; /* [-1,1] amplitude of the reflection */
-    float t; /* [0,1] 1 - r^2, without cancellation */
+    float t; /* [0,1] up to rounding: 1 - r^2, without cancellation */
 };
 HDRP_TYPEDEF(hdrp_i_brdf_amplitude)
 
-/** The interface at which x turns into y: n cos for s polarisation, cos / n for p. */
+/** The interface at which x turns into y, up to a common factor: the paths for s polarisation, the
+ *  paths over the squared IORs for p. */
 HDRP_FN hdrp_i_brdf_amplitude hdrp_i_brdf_amplitude_make(float x, float y)
 {
     hdrp_i_brdf_amplitude a;
-    float d = hdrp_max(x + y, HDRP_FLT_MIN);
-    a.r = (x - y) / d;
-    a.t = hdrp_saturate(4.0f * (x / d) * (y / d));
+    float scale = 1.0f / (x + y + HDRP_FLT_MIN); /* where both are 0 the light is grazing */
+    a.r = (x - y) * scale;
+    a.t = 4.0f * (x * scale) * (y * scale);
     return a;
 }
 
@@ -1153,24 +1234,26 @@ HDRP_FN hdrp_i_brdf_cavity hdrp_i_brdf_cavity_make(hdrp_i_brdf_amplitude top,
     hdrp_i_brdf_cavity c;
     float product = top.t * bottom.t;
     c.q = top.r * bottom.r;
-    c.t = product / hdrp_max(top.t + bottom.t - product, HDRP_FLT_MIN); /* 1 - q^2 below */
+    c.t = product / (top.t + bottom.t - product + HDRP_FLT_MIN); /* 1 - q^2 below */
     return c;
 }
 
-/** Light that enters the base of one polarisation, second order. The tail of the series is closed
- *  as if it had the spectrum of its first term, which makes a vanishing film exact. */
-HDRP_FN float hdrp_i_brdf_cavity_second_order(hdrp_i_brdf_cavity c, float s1, float s2)
+/** Path in a layer, IOR times cosine, from the squared path above; 0 for total reflection. Squares
+ *  of sines would cancel near it. */
+HDRP_FN float hdrp_i_brdf_film_path(float outer_path2, float outer_ior, float ior)
 {
-    float tail = c.q * c.q * s2 / hdrp_max(1.0f + c.q, 1e-6f);
-    return c.t * (1.0f + 2.0f * (tail - c.q * s1));
+    return hdrp_sqrt(hdrp_max((ior - outer_ior) * (ior + outer_ior) + outer_path2, 0.0f));
 }
 
-/* A film whose light path is known: what all colour channels share. */
+/* A film whose light path is known: what all colour channels share. In every layer the path of the
+ * light is IOR times cosine; its square is the difference of two squared IORs plus that above. */
 struct hdrp_i_brdf_film {
     hdrp_i_brdf_amplitude s; /* top interface, s polarisation */
     hdrp_i_brdf_amplitude p; /* top interface, p polarisation */
-    float cos_film;          /* [0,1] of the angle in the film */
-    float ior;               /* [1,3] */
+    float outer_ior;         /* [1,1.5] */
+    float outer_path2;       /* squared path above the film */
+    float ior2;              /* [1,9] squared */
+    float path;              /* in the film */
     float opd_um;            /* optical path difference of neighbouring orders */
 };
 HDRP_TYPEDEF(hdrp_i_brdf_film)
@@ -1179,38 +1262,62 @@ HDRP_FN hdrp_i_brdf_film hdrp_i_brdf_film_make(float cos_theta, float outer_ior,
                                                float thickness_nm)
 {
     hdrp_i_brdf_film f;
-    float c = hdrp_saturate(cos_theta);
-    f.ior = film_ior;
-    f.cos_film = hdrp_brdf_refracted_cosine(c, film_ior / outer_ior);
-    f.s = hdrp_i_brdf_amplitude_make(outer_ior * c, film_ior * f.cos_film);
-    f.p = hdrp_i_brdf_amplitude_make(film_ior * c, outer_ior * f.cos_film);
-    f.opd_um = 2e-3f * film_ior * thickness_nm * f.cos_film;
+    float outer_path = outer_ior * hdrp_saturate(cos_theta);
+    f.outer_ior = outer_ior;
+    f.outer_path2 = outer_path * outer_path;
+    f.ior2 = film_ior * film_ior;
+    f.path = hdrp_i_brdf_film_path(f.outer_path2, outer_ior, film_ior);
+    f.s = hdrp_i_brdf_amplitude_make(outer_path, f.path);
+    f.p = hdrp_i_brdf_amplitude_make(f.ior2 * outer_path, outer_ior * outer_ior * f.path);
+    f.opd_um = 2e-3f * thickness_nm * f.path;
     return f;
 }
 
-HDRP_FN hdrp_i_brdf_cavity hdrp_i_brdf_film_cavity_s(hdrp_i_brdf_film f, float base_ior)
+/* The film over a base of one F0. */
+struct hdrp_i_brdf_cavities {
+    hdrp_i_brdf_cavity s;
+    hdrp_i_brdf_cavity p;
+};
+HDRP_TYPEDEF(hdrp_i_brdf_cavities)
+
+/** The IOR of the base is a ratio, above / below; times below there is no pole at F0 = 1. */
+HDRP_FN hdrp_i_brdf_cavities hdrp_i_brdf_film_cavities(hdrp_i_brdf_film f, float fresnel0)
 {
-    float cos_base = hdrp_brdf_refracted_cosine(f.cos_film, base_ior / f.ior);
-    return hdrp_i_brdf_cavity_make(
-        f.s, hdrp_i_brdf_amplitude_make(f.ior * f.cos_film, base_ior * cos_base));
+    hdrp_i_brdf_cavities c;
+    float root = hdrp_sqrt(hdrp_saturate(fresnel0));
+    float above = 1.0f + root;
+    float below = 1.0f - root;
+    float path = hdrp_i_brdf_film_path(below * below * f.outer_path2, below * f.outer_ior, above);
+    c.s = hdrp_i_brdf_cavity_make(f.s, hdrp_i_brdf_amplitude_make(below * f.path, path));
+    c.p = hdrp_i_brdf_cavity_make(
+        f.p, hdrp_i_brdf_amplitude_make(above * above * f.path, below * f.ior2 * path));
+    return c;
 }
 
-HDRP_FN hdrp_i_brdf_cavity hdrp_i_brdf_film_cavity_p(hdrp_i_brdf_film f, float base_ior)
+/** Share that is reflected, where s and p of the light of both polarisations enter the base. */
+HDRP_FN float hdrp_i_brdf_film_reflected(float s, float p)
 {
-    float cos_base = hdrp_brdf_refracted_cosine(f.cos_film, base_ior / f.ior);
-    return hdrp_i_brdf_cavity_make(
-        f.p, hdrp_i_brdf_amplitude_make(base_ior * f.cos_film, f.ior * cos_base));
-}
-
-HDRP_FN float hdrp_i_brdf_film_channel(hdrp_i_brdf_film f, float fresnel0, float s1, float s2)
-{
-    float base_ior = hdrp_brdf_ior_from_fresnel0(fresnel0);
-    float s = hdrp_i_brdf_cavity_second_order(hdrp_i_brdf_film_cavity_s(f, base_ior), s1, s2);
-    float p = hdrp_i_brdf_cavity_second_order(hdrp_i_brdf_film_cavity_p(f, base_ior), s1, s2);
     return hdrp_saturate(1.0f - 0.5f * (s + p));
 }
 
-/** Reflectance of a thin film over a base, to second order: the recommended form.
+/** Light that enters the base of one polarisation: first order, then the tail from the second. */
+HDRP_FN float hdrp_i_brdf_cavity_light(hdrp_i_brdf_cavity c, hdrp_v3 row, hdrp_v3 first,
+                                       hdrp_i_brdf_waves second)
+{
+    float x = -c.q;
+    hdrp_v3 sum = hdrp_v3_mad(first, hdrp_i_brdf_waves_tail(second, x), x);
+    return c.t * (1.0f + 2.0f * x * hdrp_v3_dot(row, sum));
+}
+
+HDRP_FN float hdrp_i_brdf_film_channel(hdrp_i_brdf_film f, float fresnel0, hdrp_v3 row,
+                                       hdrp_v3 first, hdrp_i_brdf_waves second)
+{
+    hdrp_i_brdf_cavities c = hdrp_i_brdf_film_cavities(f, fresnel0);
+    return hdrp_i_brdf_film_reflected(hdrp_i_brdf_cavity_light(c.s, row, first, second),
+                                      hdrp_i_brdf_cavity_light(c.p, row, first, second));
+}
+
+/** Reflectance of a thin film over a base: the recommended form.
  *  cos_theta     [0,1]     cosine of the angle above the film
  *  outer_ior     [1,1.5]   IOR of the medium above: 1 for air, 1.5 for a clear coat
  *  film_ior      [1,3]
@@ -1219,30 +1326,38 @@ HDRP_FN float hdrp_i_brdf_film_channel(hdrp_i_brdf_film f, float fresnel0, float
  *  returns       [0,1]     linear Rec.709, colours out of gamut are limited
  *  edges         no thickness gives the bare base exactly; 1 at grazing, for fresnel0 = 1 and, at
  *                any thickness, where a film of less than outer_ior reflects totally
- *  error         <= 0.45 absolute, at grazing over a metal  @accuracy brdf_film
- *  error         <= 0.008 absolute, mean over the domain  @accuracy brdf_film_mean
+ *  error         <= 0.15 absolute, at grazing over a metal  @accuracy brdf_film
+ *  error         <= 0.0035 absolute, mean over the domain  @accuracy brdf_film_mean
+ *  error         <= 0.06 relative to the largest error of the talk's form, F0 of 0.02 to 0.7
+ *                @accuracy brdf_film_to_talk
+ *  error         <= 0.03 relative to the mean error of the talk's form, likewise
+ *                @accuracy brdf_film_to_talk_mean
  *  source        Belcour and Barla 2017, "A Practical Extension to Microfacet Theory for the
- *                Modeling of Varying Iridescence", section 4, per polarisation and with our own
- *                spectral fit
- *  note          as many exponentials and cosines as hdrp_brdf_film_fast, more square roots */
+ *                Modeling of Varying Iridescence", section 4, per polarisation, with our own
+ *                spectral fit and the series in closed form
+ *  note          three exponentials and cosines, as hdrp_brdf_film_fast; 18 divisions against 6
+ *                for the series. The talk's one thickness t in [0,1] is film_ior = 2 - t and
+ *                thickness_nm = 1500 t / film_ior. Its form reads XYZ as RGB, describes the base
+ *                against air instead of against the film, ignores which of the two is denser, and
+ *                is 0/0 or the root of a negative number at grazing and under a coat */
 HDRP_FN hdrp_v3 hdrp_brdf_film(float cos_theta, float outer_ior, float film_ior, float thickness_nm,
                                hdrp_v3 fresnel0)
 {
     hdrp_i_brdf_film f = hdrp_i_brdf_film_make(cos_theta, outer_ior, film_ior, thickness_nm);
-    hdrp_v3 s1 = hdrp_i_brdf_film_spectrum(f.opd_um);
-    hdrp_v3 s2 = hdrp_i_brdf_film_spectrum(2.0f * f.opd_um);
-    return hdrp_v3_make(hdrp_i_brdf_film_channel(f, fresnel0.x, s1.x, s2.x),
-                        hdrp_i_brdf_film_channel(f, fresnel0.y, s1.y, s2.y),
-                        hdrp_i_brdf_film_channel(f, fresnel0.z, s1.z, s2.z));
+    hdrp_i_brdf_waves w = hdrp_i_brdf_waves_make(f.opd_um);
+    hdrp_v3 first = hdrp_i_brdf_waves_values(w);
+    w = hdrp_i_brdf_waves_next(w);
+    return hdrp_v3_make(hdrp_i_brdf_film_channel(f, fresnel0.x, HDRP_I_BRDF_FILM_RED, first, w),
+                        hdrp_i_brdf_film_channel(f, fresnel0.y, HDRP_I_BRDF_FILM_GREEN, first, w),
+                        hdrp_i_brdf_film_channel(f, fresnel0.z, HDRP_I_BRDF_FILM_BLUE, first, w));
 }
 
-/* Orders after which the series of the exact form is closed. */
-#define HDRP_BRDF_FILM_ORDERS 16
+/* Order at which the series of the exact form is closed. */
+#define HDRP_BRDF_FILM_ORDERS 8
 
-/* A sum over the orders of both polarisations, in one channel each. */
+/* A sum over the orders of both polarisations, in one channel. */
 struct hdrp_i_brdf_series {
-    hdrp_i_brdf_cavity s;
-    hdrp_i_brdf_cavity p;
+    hdrp_i_brdf_cavities c;
     float power_s; /* (-q)^m */
     float power_p;
     float sum_s;
@@ -1253,11 +1368,9 @@ HDRP_TYPEDEF(hdrp_i_brdf_series)
 HDRP_FN hdrp_i_brdf_series hdrp_i_brdf_series_make(hdrp_i_brdf_film f, float fresnel0)
 {
     hdrp_i_brdf_series r;
-    float base_ior = hdrp_brdf_ior_from_fresnel0(fresnel0);
-    r.s = hdrp_i_brdf_film_cavity_s(f, base_ior);
-    r.p = hdrp_i_brdf_film_cavity_p(f, base_ior);
-    r.power_s = -r.s.q;
-    r.power_p = -r.p.q;
+    r.c = hdrp_i_brdf_film_cavities(f, fresnel0);
+    r.power_s = -r.c.s.q;
+    r.power_p = -r.c.p.q;
     r.sum_s = 0.0f;
     r.sum_p = 0.0f;
     return r;
@@ -1267,22 +1380,24 @@ HDRP_FN hdrp_i_brdf_series hdrp_i_brdf_series_add(hdrp_i_brdf_series r, float sp
 {
     r.sum_s += r.power_s * spectrum;
     r.sum_p += r.power_p * spectrum;
-    r.power_s *= -r.s.q;
-    r.power_p *= -r.p.q;
+    r.power_s *= -r.c.s.q;
+    r.power_p *= -r.c.p.q;
     return r;
 }
 
-/* The last order stands for all that follow it. */
-HDRP_FN float hdrp_i_brdf_series_close(hdrp_i_brdf_series r, float spectrum)
+/* The orders from the last on, both halves of the spectrum. */
+HDRP_FN float hdrp_i_brdf_series_close(hdrp_i_brdf_series r, hdrp_v3 row1, hdrp_i_brdf_waves w1,
+                                       hdrp_v3 row2, hdrp_i_brdf_waves w2)
 {
-    float tail_s = r.power_s * spectrum / hdrp_max(1.0f + r.s.q, 1e-6f);
-    float tail_p = r.power_p * spectrum / hdrp_max(1.0f + r.p.q, 1e-6f);
-    float s = r.s.t * (1.0f + 2.0f * (r.sum_s + tail_s));
-    float p = r.p.t * (1.0f + 2.0f * (r.sum_p + tail_p));
-    return hdrp_saturate(1.0f - 0.5f * (s + p));
+    float tail_s = hdrp_v3_dot(row1, hdrp_i_brdf_waves_tail(w1, -r.c.s.q)) +
+                   hdrp_v3_dot(row2, hdrp_i_brdf_waves_tail(w2, -r.c.s.q));
+    float tail_p = hdrp_v3_dot(row1, hdrp_i_brdf_waves_tail(w1, -r.c.p.q)) +
+                   hdrp_v3_dot(row2, hdrp_i_brdf_waves_tail(w2, -r.c.p.q));
+    return hdrp_i_brdf_film_reflected(r.c.s.t * (1.0f + 2.0f * (r.sum_s + r.power_s * tail_s)),
+                                      r.c.p.t * (1.0f + 2.0f * (r.sum_p + r.power_p * tail_p)));
 }
 
-/** Reflectance of a thin film over a base, to order 16 and with a finer spectrum: for references.
+/** Reflectance of a thin film over a base, to order 8 and with a finer spectrum: for references.
  *  cos_theta     [0,1]     cosine of the angle above the film
  *  outer_ior     [1,1.5]   IOR of the medium above
  *  film_ior      [1,3]
@@ -1290,12 +1405,12 @@ HDRP_FN float hdrp_i_brdf_series_close(hdrp_i_brdf_series r, float spectrum)
  *  fresnel0      [0,1]     of the base against air, per channel; taken as a dielectric of that F0
  *  returns       [0,1]     linear Rec.709, colours out of gamut are limited
  *  edges         as hdrp_brdf_film
- *  error         <= 0.003 absolute, at grazing over a metal  @accuracy brdf_film_exact
+ *  error         <= 0.015 absolute, at grazing over a metal  @accuracy brdf_film_exact
  *  error         <= 3.5e-4 absolute, mean over the domain  @accuracy brdf_film_exact_mean
  *  source        Born and Wolf 1999, "Principles of Optics", section 1.6.4, integrated over the
  *                colour-matching functions term by term
- *  note          what is left is the resonance of a cavity between two mirrors at grazing, whose
- *                lines are narrower than any sum of Gaussians. hdrp_brdf_film_airy has them */
+ *  note          what is left is the fit of the spectrum. hdrp_brdf_film_airy has single
+ *                wavelengths */
 HDRP_FN hdrp_v3 hdrp_brdf_film_exact(float cos_theta, float outer_ior, float film_ior,
                                      float thickness_nm, hdrp_v3 fresnel0)
 {
@@ -1303,19 +1418,25 @@ HDRP_FN hdrp_v3 hdrp_brdf_film_exact(float cos_theta, float outer_ior, float fil
     hdrp_i_brdf_series red = hdrp_i_brdf_series_make(f, fresnel0.x);
     hdrp_i_brdf_series green = hdrp_i_brdf_series_make(f, fresnel0.y);
     hdrp_i_brdf_series blue = hdrp_i_brdf_series_make(f, fresnel0.z);
-    hdrp_v3 s;
-    float opd_um = f.opd_um;
+    hdrp_i_brdf_waves w1 = hdrp_i_brdf_waves_make_1(f.opd_um);
+    hdrp_i_brdf_waves w2 = hdrp_i_brdf_waves_make_2(f.opd_um);
     int m;
     for (m = 1; m < HDRP_BRDF_FILM_ORDERS; ++m) {
-        s = hdrp_i_brdf_film_spectrum_exact(opd_um);
-        opd_um += f.opd_um;
-        red = hdrp_i_brdf_series_add(red, s.x);
-        green = hdrp_i_brdf_series_add(green, s.y);
-        blue = hdrp_i_brdf_series_add(blue, s.z);
+        hdrp_v3 s1 = hdrp_i_brdf_waves_values(w1);
+        hdrp_v3 s2 = hdrp_i_brdf_waves_values(w2);
+        red = hdrp_i_brdf_series_add(red, hdrp_v3_dot(HDRP_I_BRDF_FILM_RED_1, s1) +
+                                              hdrp_v3_dot(HDRP_I_BRDF_FILM_RED_2, s2));
+        green = hdrp_i_brdf_series_add(green, hdrp_v3_dot(HDRP_I_BRDF_FILM_GREEN_1, s1) +
+                                                  hdrp_v3_dot(HDRP_I_BRDF_FILM_GREEN_2, s2));
+        blue = hdrp_i_brdf_series_add(blue, hdrp_v3_dot(HDRP_I_BRDF_FILM_BLUE_1, s1) +
+                                                hdrp_v3_dot(HDRP_I_BRDF_FILM_BLUE_2, s2));
+        w1 = hdrp_i_brdf_waves_next(w1);
+        w2 = hdrp_i_brdf_waves_next(w2);
     }
-    s = hdrp_i_brdf_film_spectrum_exact(opd_um);
-    return hdrp_v3_make(hdrp_i_brdf_series_close(red, s.x), hdrp_i_brdf_series_close(green, s.y),
-                        hdrp_i_brdf_series_close(blue, s.z));
+    return hdrp_v3_make(
+        hdrp_i_brdf_series_close(red, HDRP_I_BRDF_FILM_RED_1, w1, HDRP_I_BRDF_FILM_RED_2, w2),
+        hdrp_i_brdf_series_close(green, HDRP_I_BRDF_FILM_GREEN_1, w1, HDRP_I_BRDF_FILM_GREEN_2, w2),
+        hdrp_i_brdf_series_close(blue, HDRP_I_BRDF_FILM_BLUE_1, w1, HDRP_I_BRDF_FILM_BLUE_2, w2));
 }
 
 /** Airy reflectance of a thin film at one wavelength, unpolarised.
@@ -1329,9 +1450,9 @@ HDRP_FN hdrp_v3 hdrp_brdf_film_exact(float cos_theta, float outer_ior, float fil
  *  edges          1 at grazing, and where the film reflects totally: light does not tunnel through
  *  error          <= 1.3e-4 absolute, light that came from air into the medium above
  *                 @accuracy brdf_film_airy
- *  error          <= 0.004 absolute, other light with a cosine 1e-3 and more above those at which
+ *  error          <= 8e-5 absolute, other light with a cosine 1e-3 and more above those at which
  *                 film or base reflect totally  @accuracy brdf_film_airy_inside
- *  error          <= 0.15 absolute, at the critical angle of the base, where the slope is infinite
+ *  error          <= 0.06 absolute, at the critical angle of the base, where the slope is infinite
  *                 @accuracy brdf_film_airy_critical
  *  source         Born and Wolf 1999, "Principles of Optics", section 1.6.4, eq. 58
  *  note           1 + 2 q cos(phase) + q^2 as (1 + q)^2 - 4 q sin^2(phase / 2) */
@@ -1339,11 +1460,10 @@ HDRP_FN float hdrp_brdf_film_airy(float cos_theta, float outer_ior, float film_i
                                   float thickness_nm, float wavelength_nm)
 {
     hdrp_i_brdf_film f = hdrp_i_brdf_film_make(cos_theta, outer_ior, film_ior, thickness_nm);
-    float cos_base = hdrp_brdf_refracted_cosine(f.cos_film, base_ior / film_ior);
-    hdrp_i_brdf_amplitude s =
-        hdrp_i_brdf_amplitude_make(film_ior * f.cos_film, base_ior * cos_base);
+    float path = hdrp_i_brdf_film_path(f.outer_path2, outer_ior, base_ior);
+    hdrp_i_brdf_amplitude s = hdrp_i_brdf_amplitude_make(f.path, path);
     hdrp_i_brdf_amplitude p =
-        hdrp_i_brdf_amplitude_make(base_ior * f.cos_film, film_ior * cos_base);
+        hdrp_i_brdf_amplitude_make(base_ior * base_ior * f.path, f.ior2 * path);
     float half_phase = HDRP_PI * (f.opd_um * 1e3f / wavelength_nm);
     float sin2 = hdrp_sq(hdrp_sin(half_phase));
     float qs = f.s.r * s.r;
@@ -1353,48 +1473,53 @@ HDRP_FN float hdrp_brdf_film_airy(float cos_theta, float outer_ior, float film_i
     return hdrp_saturate(1.0f - 0.5f * (ts + tp));
 }
 
-HDRP_FN float hdrp_i_brdf_film_fast_channel(float r12, float r23, float s1, float s2)
+/** Light that enters the base of one polarisation, second order. The tail of the series is closed
+ *  as if it had the spectrum of its first term, which makes a vanishing film exact. */
+HDRP_FN float hdrp_i_brdf_cavity_second_order(hdrp_i_brdf_cavity c, float s1, float s2)
 {
-    float t121 = 1.0f - r12;
-    float r123 = r12 * r23;
-    float rs = t121 * t121 * r23 / hdrp_max(1.0f - r123, HDRP_FLT_EPSILON);
-    float c1 = (rs - t121) * hdrp_sqrt(r123);
-    float c2 = c1 * hdrp_sqrt(r123);
-    /* The phase shift of pi at the first reflection turns the sign of odd orders. */
-    return hdrp_saturate(r12 + rs + 2.0f * (c2 * s2 - c1 * s1));
+    float tail = c.q * c.q * s2 / hdrp_max(1.0f + c.q, 1e-6f);
+    return c.t * (1.0f + 2.0f * (tail - c.q * s1));
 }
 
-/** Reflectance of a thin film over a base: the talk's approximation, its defects corrected.
+HDRP_FN float hdrp_i_brdf_film_fast_channel(hdrp_i_brdf_film f, float fresnel0, hdrp_v3 row,
+                                            hdrp_v3 first, hdrp_v3 second)
+{
+    hdrp_i_brdf_cavities c = hdrp_i_brdf_film_cavities(f, fresnel0);
+    float s1 = hdrp_v3_dot(row, first);
+    float s2 = hdrp_v3_dot(row, second);
+    return hdrp_i_brdf_film_reflected(hdrp_i_brdf_cavity_second_order(c.s, s1, s2),
+                                      hdrp_i_brdf_cavity_second_order(c.p, s1, s2));
+}
+
+/** Reflectance of a thin film over a base, to second order.
  *  cos_theta     [0,1]     cosine of the angle above the film
  *  outer_ior     [1,1.5]   IOR of the medium above
  *  film_ior      [1,3]
  *  thickness_nm  [0,3000]
- *  fresnel0      [0,1]     of the base against air, per channel
- *  returns       [0,1]     linear Rec.709
- *  edges         1 at grazing; no neutral setting: thickness 0 is not the bare base
- *  error         <= 0.75 absolute  @accuracy brdf_film_fast
- *  error         <= 0.15 absolute, mean over the domain  @accuracy brdf_film_fast_mean
- *  source        Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
- *                Definition Render Pipeline", slides on iridescence (credit: Belcour)
- *  note          corrected: XYZ was read as RGB, the phase ignored whether the base is denser than
- *                the film, and 0/0 or the root of a negative number appeared at grazing and under a
- *                coat. The talk's one thickness t in [0,1] is film_ior = 2 - t and
- *                thickness_nm = 1500 t / film_ior. For comparison: hdrp_brdf_film is better by more
- *                than a factor of ten */
+ *  fresnel0      [0,1]     of the base against air, per channel; taken as a dielectric of that F0
+ *  returns       [0,1]     linear Rec.709, colours out of gamut are limited
+ *  edges         as hdrp_brdf_film
+ *  error         <= 0.53 absolute, at grazing over a metal  @accuracy brdf_film_fast
+ *  error         <= 0.006 absolute, mean over the domain  @accuracy brdf_film_fast_mean
+ *  error         <= 0.5 relative to the largest error of the talk's form, F0 of 0.02 to 0.7
+ *                @accuracy brdf_film_fast_to_talk
+ *  error         <= 0.11 relative to the mean error of the talk's form, likewise
+ *                @accuracy brdf_film_fast_to_talk_mean
+ *  source        Belcour and Barla 2017, "A Practical Extension to Microfacet Theory for the
+ *                Modeling of Varying Iridescence", section 4, per polarisation and with our own
+ *                spectral fit
+ *  note          nearly as good as hdrp_brdf_film for F0 below 0.5 */
 HDRP_FN hdrp_v3 hdrp_brdf_film_fast(float cos_theta, float outer_ior, float film_ior,
                                     float thickness_nm, hdrp_v3 fresnel0)
 {
-    float c1 = hdrp_saturate(cos_theta);
-    float c2 = hdrp_brdf_refracted_cosine(c1, film_ior / outer_ior);
-    float r0 = hdrp_brdf_fresnel0_from_ior(film_ior, outer_ior);
-    float r12 = hdrp_brdf_f_schlick(r0, 1.0f, c1);
-    hdrp_v3 r23 = hdrp_brdf_f_schlick_rgb(fresnel0, 1.0f, c2);
-    float opd_um = 2e-3f * film_ior * thickness_nm * c2;
-    hdrp_v3 s1 = hdrp_i_brdf_film_spectrum(opd_um);
-    hdrp_v3 s2 = hdrp_i_brdf_film_spectrum(2.0f * opd_um);
-    return hdrp_v3_make(hdrp_i_brdf_film_fast_channel(r12, r23.x, s1.x, s2.x),
-                        hdrp_i_brdf_film_fast_channel(r12, r23.y, s1.y, s2.y),
-                        hdrp_i_brdf_film_fast_channel(r12, r23.z, s1.z, s2.z));
+    hdrp_i_brdf_film f = hdrp_i_brdf_film_make(cos_theta, outer_ior, film_ior, thickness_nm);
+    hdrp_i_brdf_waves w = hdrp_i_brdf_waves_make(f.opd_um);
+    hdrp_v3 s1 = hdrp_i_brdf_waves_values(w);
+    hdrp_v3 s2 = hdrp_i_brdf_waves_values(hdrp_i_brdf_waves_next(w));
+    return hdrp_v3_make(
+        hdrp_i_brdf_film_fast_channel(f, fresnel0.x, HDRP_I_BRDF_FILM_RED, s1, s2),
+        hdrp_i_brdf_film_fast_channel(f, fresnel0.y, HDRP_I_BRDF_FILM_GREEN, s1, s2),
+        hdrp_i_brdf_film_fast_channel(f, fresnel0.z, HDRP_I_BRDF_FILM_BLUE, s1, s2));
 }
 
 /** F0 of the Schlick curve that goes through a given reflectance.

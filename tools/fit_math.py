@@ -91,6 +91,12 @@ def acos():
         x = nudged(x, 0, 1)
         return x * mp.sqrt(1 - x) / mp.acos(x)
     show("acos, relative, x^1..5", remez(target, weight, range(5), 0, 1))
+    def arcsine(z):
+        z = nudged(z, 0, 1)
+        return (mp.asin(mp.sqrt(z)) / mp.sqrt(z) - 1) / z
+    show("exact acos: asin(s) = s + s z P(z), z = s^2 up to 1/4, relative, z^0..4",
+         remez(arcsine, lambda z: z * mp.sqrt(z) / mp.asin(mp.sqrt(nudged(z, 0, 1))), range(5), 0,
+               0.25))
 
 
 def atan():
@@ -101,6 +107,9 @@ def atan():
     def weight(t):
         return t**3 / mp.atan(nudged(t, 0, 1))
     show("atan, relative, t^3..13", remez(target, weight, range(0, 12, 2), 0, 1))
+    show("exact atan, relative, t^3..17", remez(target, weight, range(0, 16, 2), 0, 1))
+    for name, whole in (("pi", mp.pi), ("half pi", mp.pi / 2)):
+        print(f"{name} less its float: {mp.nstr(whole - mp.mpf(float(np.float32(float(whole)))), 9)}")
 
 
 def exp2():

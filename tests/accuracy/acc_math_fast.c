@@ -73,6 +73,50 @@ static void atan2_fast_relative_error(acc* a)
     }
 }
 
+static void acos_exact_absolute_error(acc* a)
+{
+    for (int i = 0; i < 400000; ++i) {
+        float x = acos_input(a, i) * (i % 3 ? 1.0f : -1.0f);
+        ACC_ADD(a, fabs((double)hdrp_acos_exact(x) - acos((double)x)), "x = %.9g", (double)x);
+    }
+}
+
+static void acos_exact_error(acc* a)
+{
+    for (int i = 0; i < 400000; ++i) {
+        float x = acos_input(a, i) * (i % 3 ? 1.0f : -1.0f);
+        ACC_ADD(a, acc_ulp((double)hdrp_acos_exact(x), acos((double)x)), "x = %.9g", (double)x);
+    }
+    for (uint32_t u = 0x3eff0000u; u < 0x3f010000u; u += 7u) { /* where two pieces meet */
+        float x = hdrp_f32_from_bits(u);
+        ACC_ADD(a, acc_ulp((double)hdrp_acos_exact(x), acos((double)x)), "x = %.9g", (double)x);
+    }
+}
+
+static void atan2_exact_absolute_error(acc* a)
+{
+    for (int i = 0; i < 400000; ++i) {
+        double angle = acc_uniform(a, -3.2, 3.2), radius = acc_log_uniform(a, 1e-36, 3e38);
+        float x = (float)(cos(angle) * radius), y = (float)(sin(angle) * radius);
+        ACC_ADD(a, fabs((double)hdrp_atan2_exact(y, x) - atan2((double)y, (double)x)),
+                "y = %.9g, x = %.9g", (double)y, (double)x);
+    }
+}
+
+static void atan2_exact_error(acc* a)
+{
+    for (int i = 0; i < 600000; ++i) {
+        float x = (float)acc_log_uniform(a, 1e-3, 1e3) * (i % 3 ? 1.0f : -1.0f);
+        float y = x * (float)(acc_log_uniform(a, 1e-9, 1e6) * (i % 2 ? 1.0 : -1.0));
+        if (i < 2) { /* the worst that searches of 6e7 found, without and with FMA */
+            y = i == 0 ? 0.19327119f : 0.219246507f;
+            x = i == 0 ? 1.54520273f : 1.74854493f;
+        }
+        ACC_ADD(a, acc_ulp((double)hdrp_atan2_exact(y, x), atan2((double)y, (double)x)),
+                "y = %.9g, x = %.9g", (double)y, (double)x);
+    }
+}
+
 static void exp2_fast_error(acc* a)
 {
     for (int i = 0; i < 800000; ++i) {
@@ -172,6 +216,10 @@ const acc_entry acc_math_fast[] = {
     {"acos_fast_relative", acos_fast_relative_error},
     {"atan2_fast", atan2_fast_error},
     {"atan2_fast_relative", atan2_fast_relative_error},
+    {"acos_exact", acos_exact_error},
+    {"acos_exact_absolute", acos_exact_absolute_error},
+    {"atan2_exact", atan2_exact_error},
+    {"atan2_exact_absolute", atan2_exact_absolute_error},
     {"exp2_fast", exp2_fast_error},
     {"log2_fast", log2_fast_error},
     {"pow_fast", pow_fast_error},
