@@ -343,8 +343,10 @@ struct hdrp_brdf_lit_view {
     hdrp_v3 specular_albedo; /* [0,1] of the base lobe, all bounces */
     hdrp_v3 diffuse_albedo;  /* [0,1] of the diffuse lobe on the side of v */
     hdrp_v3 transmitted;     /* [0,1] colour of refracted light, before the Fresnel term */
+    float transmitted_alpha; /* [HDRP_ALPHA_MIN,1] */
     hdrp_v3 coat_v;          /* unit, v as the coat sees it: on its own side */
     float coat_n_dot_v;      /* [HDRP_BRDF_N_DOT_V_MIN,1] */
+    float coat_alpha;        /* [HDRP_ALPHA_MIN,1] */
     float below_coat;        /* [0,1] share of light from v that the coat lets through */
 };
 HDRP_TYPEDEF(hdrp_brdf_lit_view)
@@ -422,10 +424,7 @@ HDRP_FN hdrp_brdf_alphas hdrp_i_brdf_lit_alphas(hdrp_brdf_data d, hdrp_u32 featu
 HDRP_FN hdrp_v3 hdrp_i_brdf_facing(hdrp_v3 v, hdrp_v3 n)
 {
     float missing = HDRP_BRDF_N_DOT_V_MIN - hdrp_v3_dot(n, v);
-    if (missing > 0.0f) {
-        return hdrp_normalize_or(hdrp_v3_mad(v, n, missing), n);
-    }
-    return v;
+    return hdrp_v3_select(missing, hdrp_normalize_or(hdrp_v3_mad(v, n, missing), n), v);
 }
 
 /** w with the Fresnel term of the base. */
@@ -640,18 +639,23 @@ HDRP_FN hdrp_brdf_lit_view hdrp_brdf_lit_view_make(hdrp_brdf_data d, hdrp_v3 v, 
             w, hdrp_i_brdf_slab_share(d.diffuse_color, hdrp_i_brdf_slab_transmittance(d)));
     }
     w.transmitted = hdrp_v3_splat(0.0f);
+    w.transmitted_alpha = w.alphas.t;
     if ((features & HDRP_BRDF_FEATURE_REFRACTION) != 0u) {
         w = hdrp_i_brdf_lit_view_scale_diffuse(w, hdrp_v3_splat(1.0f - d.transmission));
         w.transmitted =
             hdrp_v3_scale(hdrp_v3_mul(d.diffuse_color, d.transmittance), d.transmission);
+        w.transmitted_alpha = hdrp_brdf_alpha_from_perceptual_roughness(
+            hdrp_brdf_refraction_perceptual_roughness(d.perceptual_roughness, d.ior));
     }
     w.coat_v = w.v;
     w.coat_n_dot_v = w.n_dot_v;
+    w.coat_alpha = w.alphas.t;
     w.below_coat = 1.0f;
     if ((features & HDRP_BRDF_FEATURE_CLEAR_COAT) != 0u) {
         w.coat_v = hdrp_i_brdf_facing(w.v, d.coat_normal);
         w.coat_n_dot_v =
             hdrp_clamp(hdrp_v3_dot(d.coat_normal, w.coat_v), HDRP_BRDF_N_DOT_V_MIN, 1.0f);
+        w.coat_alpha = hdrp_brdf_alpha_from_perceptual_roughness(d.coat_perceptual_roughness);
         w.below_coat = hdrp_i_brdf_below_coat(d.coat_mask, w.coat_n_dot_v);
     }
     return w;
@@ -677,21 +681,18 @@ HDRP_FN float hdrp_i_brdf_lit_dv(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdrp_v3
 HDRP_FN float hdrp_i_brdf_lit_coat(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdrp_v3 l,
                                    float coat_n_dot_l)
 {
-    float alpha = hdrp_brdf_alpha_from_perceptual_roughness(d.coat_perceptual_roughness);
     hdrp_v3 h = hdrp_brdf_half_vector(l, w.coat_v, d.coat_normal);
     float l_dot_h = hdrp_saturate(hdrp_v3_dot(l, h));
     return d.coat_mask * hdrp_brdf_f_schlick(HDRP_BRDF_COAT_FRESNEL0, 1.0f, l_dot_h) *
-           hdrp_brdf_d_ggx_vectors(d.coat_normal, h, alpha) *
-           hdrp_brdf_v_smith_ggx(coat_n_dot_l, w.coat_n_dot_v, alpha) * coat_n_dot_l;
+           hdrp_brdf_d_ggx_vectors(d.coat_normal, h, w.coat_alpha) *
+           hdrp_brdf_v_smith_ggx(coat_n_dot_l, w.coat_n_dot_v, w.coat_alpha) * coat_n_dot_l;
 }
 
 /** Light refracted through a thin wall. */
 HDRP_FN hdrp_v3 hdrp_i_brdf_lit_refracted(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdrp_v3 l)
 {
-    float alpha = hdrp_brdf_alpha_from_perceptual_roughness(
-        hdrp_brdf_refraction_perceptual_roughness(d.perceptual_roughness, d.ior));
-    return hdrp_v3_mul(w.transmitted,
-                       hdrp_brdf_btdf_thin_ggx(d.normal, w.v, l, alpha, w.fresnel0, w.fresnel90));
+    return hdrp_v3_mul(w.transmitted, hdrp_brdf_btdf_thin_ggx(d.normal, w.v, l, w.transmitted_alpha,
+                                                              w.fresnel0, w.fresnel90));
 }
 
 /** The Lit model for one light direction.

@@ -283,10 +283,7 @@ HDRP_FN hdrp_v3 hdrp_brdf_half_vector(hdrp_v3 l, hdrp_v3 v, hdrp_v3 n)
     hdrp_v3 s = hdrp_v3_add(l, v);
     float d = hdrp_v3_dot(s, s);
     /* Squares of what is left of shorter sums would lose digits to underflow. */
-    if (!(d >= 1e-30f)) {
-        return n;
-    }
-    return hdrp_v3_scale(s, 1.0f / hdrp_sqrt(d));
+    return hdrp_v3_select(d >= 1e-30f ? 1.0f : 0.0f, hdrp_v3_scale(s, 1.0f / hdrp_sqrt(d)), n);
 }
 
 /** Squared sine of the angle between two unit vectors, precise for the smallest angles.
