@@ -1117,7 +1117,7 @@ static void hdrp_i_brdf_quadrature_init(hdrp_i_brdf_quadrature* q)
 
 static double hdrp_i_brdf_schlick_weight_of_square(double v_dot_h2)
 {
-    double x = 1.0 - sqrt(v_dot_h2 < 1.0 ? v_dot_h2 : 1.0);
+    double x = 1.0 - sqrt(v_dot_h2);
     return x * x * x * x * x;
 }
 
@@ -1142,13 +1142,17 @@ static void hdrp_i_brdf_azimuth(const hdrp_i_brdf_quadrature* nodes, hdrp_i_brdf
     double q = 2.0 * cs * cs * cd * cd * (alpha2 - 1.0);
     double p = cs * cs + cd * cd, r = 4.0 * l.s * l.c * v.s * v.c;
     double root = sqrt(lo * hi), k = sqrt(lo / hi), sum = 0.0;
+    double terms[HDRP_I_BRDF_AZIMUTH_NODES]; /* a sum in the loop would keep it scalar */
     int i;
     for (i = 0; i < HDRP_I_BRDF_AZIMUTH_NODES; ++i) {
         double t2 = nodes->tan2_half[i], u2 = k * k * t2, w = 1.0 / (1.0 + u2);
         double base_q = lo + 2.0 * r * u2 * w, e = q / base_q;
         double direct = hdrp_i_brdf_schlick_weight_of_square(0.5 * (base_q - q));
-        sum += (e - 2.0) * e * k * (1.0 + t2) * w * direct;
-        sum += hdrp_i_brdf_schlick_weight_of_square(0.5 * (p - r * nodes->cosine[i]));
+        terms[i] = (e - 2.0) * e * k * (1.0 + t2) * w * direct +
+                   hdrp_i_brdf_schlick_weight_of_square(0.5 * (p - r * nodes->cosine[i]));
+    }
+    for (i = 0; i < HDRP_I_BRDF_AZIMUTH_NODES; ++i) {
+        sum += terms[i];
     }
     *albedo = 2.0 * (1.0 - 2.0 * q / root + 0.5 * (lo + hi) * q * q / (root * root * root));
     *schlick = 2.0 * sum / HDRP_I_BRDF_AZIMUTH_NODES;
