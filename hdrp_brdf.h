@@ -509,7 +509,8 @@ HDRP_FN hdrp_v3 hdrp_i_brdf_lit_f(hdrp_brdf_data d, hdrp_brdf_lit_view w, float 
         (features & HDRP_BRDF_FEATURE_IRIDESCENCE) != 0u) {
         hdrp_v3 f0 = hdrp_i_brdf_lit_bare_fresnel0(d, features);
         hdrp_v3 bare = hdrp_brdf_f_schlick_rgb(f0, hdrp_brdf_fresnel90(f0), l_dot_h);
-        return hdrp_v3_lerp(bare, hdrp_i_brdf_lit_film(d, l_dot_h, features), d.film_mask);
+        hdrp_v3 film = hdrp_i_brdf_lit_film(d, hdrp_saturate(l_dot_h), features);
+        return hdrp_v3_lerp(bare, film, d.film_mask);
     }
     return hdrp_brdf_f_schlick_rgb(w.fresnel0, w.fresnel90, l_dot_h);
 }
@@ -541,8 +542,7 @@ HDRP_FN hdrp_v3 hdrp_i_brdf_lit_f_mean(hdrp_brdf_data d, hdrp_brdf_lit_view w, h
         float open = hdrp_saturate(l.z);
         open *= hdrp_brdf_v_smith_ggx_aniso(l.x, l.y, open, v.x, v.y, v.z, w.alphas.t, w.alphas.b);
         facets += open;
-        sum = hdrp_v3_mad(sum, hdrp_i_brdf_lit_f(d, w, hdrp_saturate(hdrp_v3_dot(v, h)), features),
-                          open);
+        sum = hdrp_v3_mad(sum, hdrp_i_brdf_lit_f(d, w, hdrp_v3_dot(v, h), features), open);
     }
     return hdrp_v3_scale(sum, 1.0f / facets);
 }
@@ -716,8 +716,7 @@ HDRP_FN hdrp_brdf_lit hdrp_brdf_lit_eval(hdrp_brdf_data d, hdrp_brdf_lit_view w,
     float n_dot_l = hdrp_v3_dot(d.normal, l);
     float front = hdrp_saturate(n_dot_l);
     hdrp_v3 h = hdrp_brdf_half_vector(l, w.v, d.normal);
-    float l_dot_h = hdrp_saturate(hdrp_v3_dot(l, h));
-    hdrp_v3 f = hdrp_i_brdf_lit_f(d, w, l_dot_h, features);
+    hdrp_v3 f = hdrp_i_brdf_lit_f(d, w, hdrp_v3_dot(l, h), features);
     float dv = hdrp_i_brdf_lit_dv(d, w, l, h, front, features) * front;
     hdrp_brdf_fgd fgd = hdrp_i_brdf_lit_fgd(d, w, l, hdrp_abs(n_dot_l), features);
     hdrp_v3 diffuse = hdrp_v3_mul(w.diffuse, hdrp_brdf_diffuse_share(fgd, w.bounces, w.fresnel90));
