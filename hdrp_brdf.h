@@ -343,8 +343,10 @@ struct hdrp_brdf_lit_view {
     hdrp_v3 specular_albedo; /* [0,1] of the base lobe, all bounces */
     hdrp_v3 diffuse_albedo;  /* [0,1] of the diffuse lobe on the side of v */
     hdrp_v3 transmitted;     /* [0,1] colour of refracted light, before the Fresnel term */
+    float transmitted_alpha; /* [HDRP_ALPHA_MIN,1] */
     hdrp_v3 coat_v;          /* unit, v as the coat sees it: on its own side */
     float coat_n_dot_v;      /* [HDRP_BRDF_N_DOT_V_MIN,1] */
+    float coat_alpha;        /* [HDRP_ALPHA_MIN,1] */
     float below_coat;        /* [0,1] share of light from v that the coat lets through */
 };
 HDRP_TYPEDEF(hdrp_brdf_lit_view)
@@ -422,10 +424,7 @@ HDRP_FN hdrp_brdf_alphas hdrp_i_brdf_lit_alphas(hdrp_brdf_data d, hdrp_u32 featu
 HDRP_FN hdrp_v3 hdrp_i_brdf_facing(hdrp_v3 v, hdrp_v3 n)
 {
     float missing = HDRP_BRDF_N_DOT_V_MIN - hdrp_v3_dot(n, v);
-    if (missing > 0.0f) {
-        return hdrp_normalize_or(hdrp_v3_mad(v, n, missing), n);
-    }
-    return v;
+    return hdrp_v3_select(missing, hdrp_normalize_or(hdrp_v3_mad(v, n, missing), n), v);
 }
 
 /** w with the Fresnel term of the base. */
@@ -510,7 +509,8 @@ HDRP_FN hdrp_v3 hdrp_i_brdf_lit_f(hdrp_brdf_data d, hdrp_brdf_lit_view w, float 
         (features & HDRP_BRDF_FEATURE_IRIDESCENCE) != 0u) {
         hdrp_v3 f0 = hdrp_i_brdf_lit_bare_fresnel0(d, features);
         hdrp_v3 bare = hdrp_brdf_f_schlick_rgb(f0, hdrp_brdf_fresnel90(f0), l_dot_h);
-        return hdrp_v3_lerp(bare, hdrp_i_brdf_lit_film(d, l_dot_h, features), d.film_mask);
+        hdrp_v3 film = hdrp_i_brdf_lit_film(d, hdrp_saturate(l_dot_h), features);
+        return hdrp_v3_lerp(bare, film, d.film_mask);
     }
     return hdrp_brdf_f_schlick_rgb(w.fresnel0, w.fresnel90, l_dot_h);
 }
@@ -542,8 +542,7 @@ HDRP_FN hdrp_v3 hdrp_i_brdf_lit_f_mean(hdrp_brdf_data d, hdrp_brdf_lit_view w, h
         float open = hdrp_saturate(l.z);
         open *= hdrp_brdf_v_smith_ggx_aniso(l.x, l.y, open, v.x, v.y, v.z, w.alphas.t, w.alphas.b);
         facets += open;
-        sum = hdrp_v3_mad(sum, hdrp_i_brdf_lit_f(d, w, hdrp_saturate(hdrp_v3_dot(v, h)), features),
-                          open);
+        sum = hdrp_v3_mad(sum, hdrp_i_brdf_lit_f(d, w, hdrp_v3_dot(v, h), features), open);
     }
     return hdrp_v3_scale(sum, 1.0f / facets);
 }
@@ -640,18 +639,23 @@ HDRP_FN hdrp_brdf_lit_view hdrp_brdf_lit_view_make(hdrp_brdf_data d, hdrp_v3 v, 
             w, hdrp_i_brdf_slab_share(d.diffuse_color, hdrp_i_brdf_slab_transmittance(d)));
     }
     w.transmitted = hdrp_v3_splat(0.0f);
+    w.transmitted_alpha = w.alphas.t;
     if ((features & HDRP_BRDF_FEATURE_REFRACTION) != 0u) {
         w = hdrp_i_brdf_lit_view_scale_diffuse(w, hdrp_v3_splat(1.0f - d.transmission));
         w.transmitted =
             hdrp_v3_scale(hdrp_v3_mul(d.diffuse_color, d.transmittance), d.transmission);
+        w.transmitted_alpha = hdrp_brdf_alpha_from_perceptual_roughness(
+            hdrp_brdf_refraction_perceptual_roughness(d.perceptual_roughness, d.ior));
     }
     w.coat_v = w.v;
     w.coat_n_dot_v = w.n_dot_v;
+    w.coat_alpha = w.alphas.t;
     w.below_coat = 1.0f;
     if ((features & HDRP_BRDF_FEATURE_CLEAR_COAT) != 0u) {
         w.coat_v = hdrp_i_brdf_facing(w.v, d.coat_normal);
         w.coat_n_dot_v =
             hdrp_clamp(hdrp_v3_dot(d.coat_normal, w.coat_v), HDRP_BRDF_N_DOT_V_MIN, 1.0f);
+        w.coat_alpha = hdrp_brdf_alpha_from_perceptual_roughness(d.coat_perceptual_roughness);
         w.below_coat = hdrp_i_brdf_below_coat(d.coat_mask, w.coat_n_dot_v);
     }
     return w;
@@ -677,21 +681,18 @@ HDRP_FN float hdrp_i_brdf_lit_dv(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdrp_v3
 HDRP_FN float hdrp_i_brdf_lit_coat(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdrp_v3 l,
                                    float coat_n_dot_l)
 {
-    float alpha = hdrp_brdf_alpha_from_perceptual_roughness(d.coat_perceptual_roughness);
     hdrp_v3 h = hdrp_brdf_half_vector(l, w.coat_v, d.coat_normal);
     float l_dot_h = hdrp_saturate(hdrp_v3_dot(l, h));
     return d.coat_mask * hdrp_brdf_f_schlick(HDRP_BRDF_COAT_FRESNEL0, 1.0f, l_dot_h) *
-           hdrp_brdf_d_ggx_vectors(d.coat_normal, h, alpha) *
-           hdrp_brdf_v_smith_ggx(coat_n_dot_l, w.coat_n_dot_v, alpha) * coat_n_dot_l;
+           hdrp_brdf_d_ggx_vectors(d.coat_normal, h, w.coat_alpha) *
+           hdrp_brdf_v_smith_ggx(coat_n_dot_l, w.coat_n_dot_v, w.coat_alpha) * coat_n_dot_l;
 }
 
 /** Light refracted through a thin wall. */
 HDRP_FN hdrp_v3 hdrp_i_brdf_lit_refracted(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdrp_v3 l)
 {
-    float alpha = hdrp_brdf_alpha_from_perceptual_roughness(
-        hdrp_brdf_refraction_perceptual_roughness(d.perceptual_roughness, d.ior));
-    return hdrp_v3_mul(w.transmitted,
-                       hdrp_brdf_btdf_thin_ggx(d.normal, w.v, l, alpha, w.fresnel0, w.fresnel90));
+    return hdrp_v3_mul(w.transmitted, hdrp_brdf_btdf_thin_ggx(d.normal, w.v, l, w.transmitted_alpha,
+                                                              w.fresnel0, w.fresnel90));
 }
 
 /** The Lit model for one light direction.
@@ -715,8 +716,7 @@ HDRP_FN hdrp_brdf_lit hdrp_brdf_lit_eval(hdrp_brdf_data d, hdrp_brdf_lit_view w,
     float n_dot_l = hdrp_v3_dot(d.normal, l);
     float front = hdrp_saturate(n_dot_l);
     hdrp_v3 h = hdrp_brdf_half_vector(l, w.v, d.normal);
-    float l_dot_h = hdrp_saturate(hdrp_v3_dot(l, h));
-    hdrp_v3 f = hdrp_i_brdf_lit_f(d, w, l_dot_h, features);
+    hdrp_v3 f = hdrp_i_brdf_lit_f(d, w, hdrp_v3_dot(l, h), features);
     float dv = hdrp_i_brdf_lit_dv(d, w, l, h, front, features) * front;
     hdrp_brdf_fgd fgd = hdrp_i_brdf_lit_fgd(d, w, l, hdrp_abs(n_dot_l), features);
     hdrp_v3 diffuse = hdrp_v3_mul(w.diffuse, hdrp_brdf_diffuse_share(fgd, w.bounces, w.fresnel90));
@@ -1116,7 +1116,7 @@ static void hdrp_i_brdf_quadrature_init(hdrp_i_brdf_quadrature* q)
 
 static double hdrp_i_brdf_schlick_weight_of_square(double v_dot_h2)
 {
-    double x = 1.0 - sqrt(v_dot_h2 < 1.0 ? v_dot_h2 : 1.0);
+    double x = 1.0 - sqrt(v_dot_h2);
     return x * x * x * x * x;
 }
 
@@ -1141,13 +1141,17 @@ static void hdrp_i_brdf_azimuth(const hdrp_i_brdf_quadrature* nodes, hdrp_i_brdf
     double q = 2.0 * cs * cs * cd * cd * (alpha2 - 1.0);
     double p = cs * cs + cd * cd, r = 4.0 * l.s * l.c * v.s * v.c;
     double root = sqrt(lo * hi), k = sqrt(lo / hi), sum = 0.0;
+    double terms[HDRP_I_BRDF_AZIMUTH_NODES]; /* a sum in the loop would keep it scalar */
     int i;
     for (i = 0; i < HDRP_I_BRDF_AZIMUTH_NODES; ++i) {
         double t2 = nodes->tan2_half[i], u2 = k * k * t2, w = 1.0 / (1.0 + u2);
         double base_q = lo + 2.0 * r * u2 * w, e = q / base_q;
         double direct = hdrp_i_brdf_schlick_weight_of_square(0.5 * (base_q - q));
-        sum += (e - 2.0) * e * k * (1.0 + t2) * w * direct;
-        sum += hdrp_i_brdf_schlick_weight_of_square(0.5 * (p - r * nodes->cosine[i]));
+        terms[i] = (e - 2.0) * e * k * (1.0 + t2) * w * direct +
+                   hdrp_i_brdf_schlick_weight_of_square(0.5 * (p - r * nodes->cosine[i]));
+    }
+    for (i = 0; i < HDRP_I_BRDF_AZIMUTH_NODES; ++i) {
+        sum += terms[i];
     }
     *albedo = 2.0 * (1.0 - 2.0 * q / root + 0.5 * (lo + hi) * q * q / (root * root * root));
     *schlick = 2.0 * sum / HDRP_I_BRDF_AZIMUTH_NODES;

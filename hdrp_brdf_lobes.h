@@ -283,10 +283,7 @@ HDRP_FN hdrp_v3 hdrp_brdf_half_vector(hdrp_v3 l, hdrp_v3 v, hdrp_v3 n)
     hdrp_v3 s = hdrp_v3_add(l, v);
     float d = hdrp_v3_dot(s, s);
     /* Squares of what is left of shorter sums would lose digits to underflow. */
-    if (!(d >= 1e-30f)) {
-        return n;
-    }
-    return hdrp_v3_scale(s, 1.0f / hdrp_sqrt(d));
+    return hdrp_v3_select(d >= 1e-30f ? 1.0f : 0.0f, hdrp_v3_scale(s, 1.0f / hdrp_sqrt(d)), n);
 }
 
 /** Squared sine of the angle between two unit vectors, precise for the smallest angles.
@@ -852,13 +849,13 @@ HDRP_FN hdrp_brdf_fgd_fit hdrp_brdf_fgd_fit_towards(hdrp_brdf_fgd_fit fit,
  *  fit      valid  made by hdrp_brdf_fgd_fit_make
  *  n_dot_x  [0,1]  cosine between unit normal and direction
  *  returns  [0,1]
- *  edges    exactly albedo 1 at grazing
+ *  edges    exactly albedo 1 at grazing; not limited, but rounding above 1 does no harm
  *  error    none: see hdrp_brdf_fgd_fast
  *  source   our own minimax fit to a quadrature, by tools/fit_brdf.py */
 HDRP_FN hdrp_brdf_fgd hdrp_brdf_fgd_from_fit(hdrp_brdf_fgd_fit fit, float n_dot_x)
 {
     hdrp_brdf_fgd f;
-    float c = hdrp_saturate(n_dot_x);
+    float c = n_dot_x;
     float t = c * fit.inverse_alpha;
     float m = c + (fit.cosine_n.x + fit.cosine_n.y * c) / (1.0f + fit.cosine_d * t);
     float loss = t * (fit.loss_n.x + fit.loss_n.y * t) /
@@ -880,7 +877,8 @@ HDRP_FN hdrp_brdf_fgd hdrp_brdf_fgd_from_fit(hdrp_brdf_fgd_fit fit, float n_dot_
  *                        lobe that is coupled to it from gaining energy */
 HDRP_FN hdrp_brdf_fgd hdrp_brdf_fgd_fast(float n_dot_v, float perceptual_roughness)
 {
-    return hdrp_brdf_fgd_from_fit(hdrp_brdf_fgd_fit_make(perceptual_roughness), n_dot_v);
+    return hdrp_brdf_fgd_from_fit(hdrp_brdf_fgd_fit_make(perceptual_roughness),
+                                  hdrp_saturate(n_dot_v));
 }
 
 /** Factor that gives a GGX lobe back the light that bounces more than once between microfacets.
@@ -962,8 +960,8 @@ HDRP_FN hdrp_brdf_bounces hdrp_brdf_bounces_make(hdrp_brdf_fgd_fit fit, hdrp_v3 
 HDRP_FN hdrp_v3 hdrp_brdf_multiscatter(hdrp_brdf_fgd_fit fit, float n_dot_v, float n_dot_l,
                                        hdrp_v3 fresnel0, float fresnel90)
 {
-    float v = 1.0f - hdrp_brdf_fgd_from_fit(fit, n_dot_v).albedo;
-    float l = 1.0f - hdrp_brdf_fgd_from_fit(fit, n_dot_l).albedo;
+    float v = 1.0f - hdrp_brdf_fgd_from_fit(fit, hdrp_saturate(n_dot_v)).albedo;
+    float l = 1.0f - hdrp_brdf_fgd_from_fit(fit, hdrp_saturate(n_dot_l)).albedo;
     return hdrp_v3_scale(hdrp_brdf_bounces_make(fit, fresnel0, fresnel90).reflected,
                          v * l * HDRP_INV_PI / fit.mean_loss);
 }
@@ -1078,8 +1076,10 @@ HDRP_FN hdrp_v3 hdrp_brdf_diffuse(hdrp_brdf_fgd_fit fit, float n_dot_v, float n_
                                   hdrp_v3 fresnel0, float fresnel90)
 {
     hdrp_brdf_bounces bounces = hdrp_brdf_bounces_make(fit, fresnel0, fresnel90);
-    hdrp_v3 v = hdrp_brdf_diffuse_share(hdrp_brdf_fgd_from_fit(fit, n_dot_v), bounces, fresnel90);
-    hdrp_v3 l = hdrp_brdf_diffuse_share(hdrp_brdf_fgd_from_fit(fit, n_dot_l), bounces, fresnel90);
+    hdrp_brdf_fgd fgd_v = hdrp_brdf_fgd_from_fit(fit, hdrp_saturate(n_dot_v));
+    hdrp_brdf_fgd fgd_l = hdrp_brdf_fgd_from_fit(fit, hdrp_saturate(n_dot_l));
+    hdrp_v3 v = hdrp_brdf_diffuse_share(fgd_v, bounces, fresnel90);
+    hdrp_v3 l = hdrp_brdf_diffuse_share(fgd_l, bounces, fresnel90);
     hdrp_v3 mean = hdrp_brdf_diffuse_share_mean(fit, bounces, fresnel90);
     return hdrp_v3_make(HDRP_INV_PI * (1.0f - fresnel0.x) * v.x * l.x / mean.x,
                         HDRP_INV_PI * (1.0f - fresnel0.y) * v.y * l.y / mean.y,
@@ -1657,7 +1657,7 @@ HDRP_FN hdrp_v3 hdrp_brdf_btdf_thin_ggx(hdrp_v3 n, hdrp_v3 v, hdrp_v3 l, float a
 {
     hdrp_v3 mirrored = hdrp_v3_mad(l, n, -2.0f * hdrp_v3_dot(n, l));
     hdrp_v3 h = hdrp_brdf_half_vector(mirrored, v, n);
-    float n_dot_v = hdrp_saturate(hdrp_v3_dot(n, v));
+    float n_dot_v = hdrp_max(hdrp_v3_dot(n, v), 0.0f);
     float n_dot_l = hdrp_saturate(hdrp_v3_dot(n, mirrored));
     float dv =
         hdrp_brdf_d_ggx_vectors(n, h, alpha) * hdrp_brdf_v_smith_ggx(n_dot_l, n_dot_v, alpha);

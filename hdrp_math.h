@@ -32,8 +32,8 @@
  *       f32_from_u32 u32_from_f32 reverse_bits bits_from_f32 f32_from_bits min max clamp saturate
  *       lerp sq sign_not_zero
  *   vectors: v2_make v3_make v4_make u32x4_make v2_add v2_sub v2_scale v2_dot v3_splat v3_add
- *       v3_sub v3_mul v3_scale v3_mad v3_neg v3_lerp v3_max v3_saturate v3_max_component v3_dot
- *       v3_cross v3_length v3_normalize v4_mul v4_dot v3_from_v4 v4_from_v3 normalize_or
+ *       v3_sub v3_mul v3_scale v3_mad v3_neg v3_lerp v3_max v3_saturate v3_select v3_max_component
+ *       v3_dot v3_cross v3_length v3_normalize v4_mul v4_dot v3_from_v4 v4_from_v3 normalize_or
  *       basis_from_normal
  *   fast math: acos_fast atan2_fast acos_exact atan2_exact exp2_fast log2_fast pow_fast rsqrt_fast
  *       sincos sincos_fast
@@ -585,6 +585,13 @@ HDRP_FN hdrp_v3 hdrp_v3_saturate(hdrp_v3 v)
     return hdrp_v3_make(hdrp_saturate(v.x), hdrp_saturate(v.y), hdrp_saturate(v.z));
 }
 
+/** a where condition is positive, else b; without a branch, which would keep loops scalar. */
+HDRP_FN hdrp_v3 hdrp_v3_select(float condition, hdrp_v3 a, hdrp_v3 b)
+{
+    return hdrp_v3_make(condition > 0.0f ? a.x : b.x, condition > 0.0f ? a.y : b.y,
+                        condition > 0.0f ? a.z : b.z);
+}
+
 /** The largest component. */
 HDRP_FN float hdrp_v3_max_component(hdrp_v3 v)
 {
@@ -665,10 +672,9 @@ HDRP_FN hdrp_v3 hdrp_normalize_or(hdrp_v3 v, hdrp_v3 fallback)
     float d = hdrp_v3_dot(s, s);
     float k = 1.0f / hdrp_sqrt(d);
     /* For a usable v, d is in [1,3]. 0/0, inf/inf and NaN make d a NaN, which fails the test. */
-    if (!(d >= 1.0f && m <= HDRP_FLT_MAX)) {
-        return fallback;
-    }
-    return hdrp_v3_scale(s, k);
+    float usable = d >= 1.0f ? 1.0f : 0.0f;
+    usable = m <= HDRP_FLT_MAX ? usable : 0.0f;
+    return hdrp_v3_select(usable, hdrp_v3_scale(s, k), fallback);
 }
 
 struct hdrp_basis {

@@ -47,6 +47,13 @@
 
 /* >>scalar codecs */
 
+/** A whole number between -2^22 and 2^22 in two's complement of 22 bits. Loops vectorise better so
+ *  than with hdrp_u32_from_f32: no x86 before AVX-512 converts to unsigned integers. */
+HDRP_FN hdrp_u32 hdrp_i_pack_u32_from_whole(float x)
+{
+    return hdrp_bits_from_f32(x + 12582912.0f) & 0x3fffffu; /* 1.5 * 2^23 */
+}
+
 /** The UNORM code nearest to x.
  *  x        any    value; limited to [0,1]
  *  bits     [0,16] width of the code
@@ -60,9 +67,11 @@ HDRP_FN hdrp_u32 hdrp_pack_unorm_from_float(float x, hdrp_u32 bits)
 {
     float v = hdrp_saturate(x);
     float scaled = v * hdrp_f32_from_u32(1u << bits);
-    hdrp_u32 whole = hdrp_u32_from_f32(scaled);
-    float fraction = scaled - hdrp_f32_from_u32(whole);
-    return whole + (fraction - 0.5f >= v ? 1u : 0u) - (fraction < v - 0.5f ? 1u : 0u);
+    float whole = hdrp_floor(scaled);
+    float fraction = scaled - whole;
+    float up = fraction - 0.5f >= v ? 1.0f : 0.0f;
+    float down = fraction < v - 0.5f ? 1.0f : 0.0f;
+    return hdrp_i_pack_u32_from_whole(whole + up - down);
 }
 
 /** Value of a UNORM code.
@@ -236,22 +245,22 @@ HDRP_FN hdrp_v4 hdrp_pack_linear_from_srgba8(hdrp_u32 texel)
 
 /* >>small floats
  * Half, and the 11- and 10-bit channels of R11G11B10F: five exponent bits, bias 15, and 10, 6 or 5
- * mantissa bits. Integer arithmetic throughout, so that neither the rounding mode nor flushed
- * denormals of a device matter. */
+ * mantissa bits. Integer arithmetic but for one addition, which rounds what becomes denormal: it
+ * wants rounding to nearest, as every GPU has it, and neither sees nor makes denormal floats. */
 
 /* Rounds the bits of a finite float >= 0 to such a format, to nearest with ties to even. Too large
  * a value gives the code of infinity or one above it. */
 HDRP_FN hdrp_u32 hdrp_i_pack_small_float(hdrp_u32 magnitude, hdrp_u32 mantissa_bits)
 {
     hdrp_u32 drop = 23u - mantissa_bits;
-    hdrp_u32 exponent = magnitude >> 23u;
-    /* Below 2^-14, exponent 113, the result is denormal: a fixed-point number, whose last bit is
-     * worth 2^(-14 - mantissa_bits). From a shift by 25 on everything rounds to 0. */
-    hdrp_u32 denormal_shift = exponent + 25u < drop + 113u ? 25u : drop + 113u - exponent;
-    hdrp_u32 shift = exponent < 113u ? denormal_shift : drop;
-    hdrp_u32 value =
-        exponent < 113u ? (magnitude & 0x7fffffu) | 0x800000u : magnitude - 0x38000000u;
-    return (value + ((1u << (shift - 1u)) - 1u) + ((value >> shift) & 1u)) >> shift;
+    hdrp_u32 odd = (magnitude >> drop) & 1u;
+    /* The exponent is re-biased by 112. */
+    hdrp_u32 normal = (magnitude - 0x38000000u + ((1u << (drop - 1u)) - 1u) + odd) >> drop;
+    /* Below 2^-14, exponent 113, the result is a fixed-point number, whose last bit is worth
+     * 2^(-14 - mantissa_bits): that of a float whose exponent is 23 larger. */
+    hdrp_u32 aligner = (136u - mantissa_bits) << 23u;
+    float aligned = hdrp_f32_from_bits(magnitude) + hdrp_f32_from_bits(aligner);
+    return magnitude < 0x38800000u ? hdrp_bits_from_f32(aligned) - aligner : normal;
 }
 
 HDRP_FN float hdrp_i_pack_float_from_small(hdrp_u32 code, hdrp_u32 mantissa_bits)
@@ -264,17 +273,20 @@ HDRP_FN float hdrp_i_pack_float_from_small(hdrp_u32 code, hdrp_u32 mantissa_bits
     return exponent == 0u ? hdrp_f32_from_u32(code) * denormal_unit : normal;
 }
 
-/* The code of one unsigned channel, see hdrp_pack_r11g11b10f_from_rgb. */
+/* The code of one unsigned channel, see hdrp_pack_r11g11b10f_from_rgb. It takes differences whose
+ * highest bit says which number is larger: of so many selections compilers make branches. */
 HDRP_FN hdrp_u32 hdrp_i_pack_unsigned_float(float x, hdrp_u32 mantissa_bits)
 {
     hdrp_u32 bits = hdrp_bits_from_f32(x);
     hdrp_u32 magnitude = bits & 0x7fffffffu;
-    hdrp_u32 infinity = 31u << mantissa_bits;
-    hdrp_u32 rounded = hdrp_i_pack_small_float(magnitude, mantissa_bits);
-    hdrp_u32 finite = rounded < infinity ? rounded : infinity - 1u;
-    hdrp_u32 positive = magnitude == 0x7f800000u ? infinity : finite;
-    hdrp_u32 not_nan = bits == magnitude ? positive : 0u;
-    return magnitude > 0x7f800000u ? infinity | (1u << (mantissa_bits - 1u)) : not_nan;
+    hdrp_u32 largest = 0x47800000u - (1u << (23u - mantissa_bits));
+    hdrp_u32 finite =
+        hdrp_i_pack_small_float(magnitude < largest ? magnitude : largest, mantissa_bits);
+    hdrp_u32 not_finite = (0x7f7fffffu - magnitude) >> 31u;
+    hdrp_u32 nan = (0x7f800000u - magnitude) >> 31u;
+    hdrp_u32 kept = ((bits >> 31u) - 1u) | (0u - nan);
+    /* The code of infinity is the next after the largest number. */
+    return ((finite + not_finite) & kept) | (nan << (mantissa_bits - 1u));
 }
 
 HDRP_FN hdrp_u32 hdrp_i_pack_half(float x, hdrp_u32 overflow)
@@ -463,39 +475,38 @@ HDRP_FN hdrp_v2 hdrp_i_pack_oct_project(hdrp_v3 n, float scale)
     float l1 = hdrp_abs(n.x) + hdrp_abs(n.y) + hdrp_abs(n.z);
     float x = hdrp_abs(n.x) * scale / l1;
     float y = hdrp_abs(n.y) * scale / l1;
-    return n.z < 0.0f ? hdrp_v2_make(scale - y, scale - x) : hdrp_v2_make(x, y);
+    /* A rounded quotient can exceed scale by an ulp. */
+    return hdrp_v2_make(hdrp_abs(n.z < 0.0f ? scale - y : x), hdrp_abs(n.z < 0.0f ? scale - x : y));
 }
 
-/* n, or +Z where n has no direction that survives a sum of its components. */
-HDRP_FN hdrp_v3 hdrp_i_pack_oct_direction(hdrp_v3 n)
+/* code, or the one of +Z where n has no direction that survives a sum of its components. */
+HDRP_FN hdrp_u32 hdrp_i_pack_oct_known(hdrp_u32 code, hdrp_v3 n, hdrp_u32 code_up)
 {
     float l1 = hdrp_abs(n.x) + hdrp_abs(n.y) + hdrp_abs(n.z);
-    if (!(l1 >= 1e-30f && l1 <= 1e30f)) {
-        return hdrp_v3_make(0.0f, 0.0f, 1.0f);
-    }
-    return n;
+    hdrp_u32 known = l1 <= 1e30f ? code : code_up;
+    return l1 >= 1e-30f ? known : code_up;
 }
 
-/* 1 where the code with these magnitudes has the z sign of n, else 0. A code is magnitude + offset
+/* 1 where the code with these magnitudes is below the equator, else 0. A code is magnitude + offset
  * steps from the middle; the equator is where both sum to last + offset. */
-HDRP_FN float hdrp_i_pack_oct_keeps_side(hdrp_v2 code, float n_z, float last, float offset)
+HDRP_FN float hdrp_i_pack_oct_below(float x, float y, float last, float offset)
 {
-    return (code.x + code.y > last - offset) == (n_z < 0.0f) ? 1.0f : 0.0f;
+    return x + y > last - offset ? 1.0f : 0.0f;
 }
 
 /* The magnitudes nearest to p, each in [0,last], on the side of the equator that n_z tells. */
 HDRP_FN hdrp_v2 hdrp_i_pack_oct_round(hdrp_v2 p, float n_z, float last, float offset)
 {
-    float x = hdrp_clamp(hdrp_floor(p.x + (0.5f - offset)), 0.0f, last);
-    float y = hdrp_clamp(hdrp_floor(p.y + (0.5f - offset)), 0.0f, last);
-    float crossing = 1.0f - hdrp_i_pack_oct_keeps_side(hdrp_v2_make(x, y), n_z, last, offset);
-    float move = n_z < 0.0f ? crossing : -crossing;
-    float next_x = x + move;
-    float next_y = y + move;
-    /* How far p lies on that side of the code; -2, less than any, where there is no next code. */
-    float gain_x = next_x < 0.0f || next_x > last ? -2.0f : move * (p.x - offset - x);
-    float gain_y = next_y < 0.0f || next_y > last ? -2.0f : move * (p.y - offset - y);
-    return gain_x >= gain_y ? hdrp_v2_make(next_x, y) : hdrp_v2_make(x, next_y);
+    float x = hdrp_floor(p.x + (0.5f - offset));
+    float y = hdrp_floor(p.y + (0.5f - offset));
+    float move = (n_z < 0.0f ? 1.0f : 0.0f) - hdrp_i_pack_oct_below(x, y, last, offset);
+    /* How much farther p lies on that side in x than in y; at the corners of the square, where one
+     * of them has no next code, the other goes. */
+    float corner = move * (x - y);
+    float gain = move * ((p.x - p.y) - (x - y));
+    gain = corner >= last ? -1.0f : gain;
+    gain = corner <= -last ? 1.0f : gain;
+    return hdrp_v2_make(x + (gain >= 0.0f ? move : 0.0f), y + (gain >= 0.0f ? 0.0f : move));
 }
 
 /* The vector, of any length, at a signed point of the square. */
@@ -516,41 +527,59 @@ HDRP_FN float hdrp_i_pack_oct_error(hdrp_v2 code, hdrp_v3 n, float last, float o
     return hdrp_v3_dot(c, c) / hdrp_v3_dot(d, d);
 }
 
-/* The best of the four codes around p, and of the rounded one, which has the right side for
- * sure. */
+/* best, a code and its error, or another code where that is on the right side and nearer to n. */
+HDRP_FN hdrp_v3 hdrp_i_pack_oct_nearer(hdrp_v3 best, float x, float y, hdrp_v3 n, float last,
+                                       float offset)
+{
+    float cx = hdrp_clamp(x, 0.0f, last);
+    float cy = hdrp_clamp(y, 0.0f, last);
+    float below = hdrp_i_pack_oct_below(cx, cy, last, offset);
+    float error = hdrp_i_pack_oct_error(hdrp_v2_make(cx, cy), n, last, offset);
+    float other = n.z < 0.0f ? 1.0f - below : below;
+    float limit = other > 0.0f ? 0.0f : best.z;
+    return hdrp_v3_make(error < limit ? cx : best.x, error < limit ? cy : best.y,
+                        error < limit ? error : best.z);
+}
+
+/* The best of the four codes around p, and of the rounded one, which has the right side for sure.
+ * Written out, because compilers unroll loops only after they have vectorised the one around. */
 HDRP_FN hdrp_v2 hdrp_i_pack_oct_search(hdrp_v2 p, hdrp_v3 n, float last, float offset)
 {
-    hdrp_v2 best = hdrp_i_pack_oct_round(p, n.z, last, offset);
-    float best_error = hdrp_i_pack_oct_error(best, n, last, offset);
+    hdrp_v2 r = hdrp_i_pack_oct_round(p, n.z, last, offset);
+    hdrp_v3 best = hdrp_v3_make(r.x, r.y, hdrp_i_pack_oct_error(r, n, last, offset));
     float x = hdrp_floor(p.x - offset);
     float y = hdrp_floor(p.y - offset);
-    for (hdrp_u32 k = 0u; k < 4u; ++k) {
-        hdrp_v2 code = hdrp_v2_make(hdrp_clamp(x + hdrp_f32_from_u32(k & 1u), 0.0f, last),
-                                    hdrp_clamp(y + hdrp_f32_from_u32(k >> 1u), 0.0f, last));
-        float error = hdrp_i_pack_oct_error(code, n, last, offset);
-        if (hdrp_i_pack_oct_keeps_side(code, n.z, last, offset) > 0.0f && error < best_error) {
-            best = code;
-            best_error = error;
-        }
-    }
-    return best;
+    best = hdrp_i_pack_oct_nearer(best, x, y, n, last, offset);
+    best = hdrp_i_pack_oct_nearer(best, x + 1.0f, y, n, last, offset);
+    best = hdrp_i_pack_oct_nearer(best, x, y + 1.0f, n, last, offset);
+    best = hdrp_i_pack_oct_nearer(best, x + 1.0f, y + 1.0f, n, last, offset);
+    return hdrp_v2_make(best.x, best.y);
+}
+
+/* A magnitude with the sign of another number. */
+HDRP_FN float hdrp_i_pack_with_sign(float magnitude, float sign_of)
+{
+    return hdrp_f32_from_bits(hdrp_bits_from_f32(magnitude) |
+                              (hdrp_bits_from_f32(sign_of) & 0x80000000u));
 }
 
 /* Both coordinates in two's complement. */
 HDRP_FN hdrp_u32 hdrp_i_pack_oct_snorm_code(hdrp_v2 code, hdrp_v3 n, hdrp_u32 bits)
 {
-    return hdrp_i_pack_signed_code(hdrp_u32_from_f32(code.x), n.x, bits) |
-           (hdrp_i_pack_signed_code(hdrp_u32_from_f32(code.y), n.y, bits) << bits);
+    hdrp_u32 mask = (1u << bits) - 1u;
+    hdrp_u32 x = hdrp_i_pack_u32_from_whole(hdrp_i_pack_with_sign(code.x, n.x)) & mask;
+    hdrp_u32 y = hdrp_i_pack_u32_from_whole(hdrp_i_pack_with_sign(code.y, n.y)) & mask;
+    return hdrp_i_pack_oct_known(x | (y << bits), n, 0u);
 }
 
 /* Both coordinates counted from -1. */
 HDRP_FN hdrp_u32 hdrp_i_pack_oct_unorm_code(hdrp_v2 code, hdrp_v3 n, hdrp_u32 bits)
 {
-    hdrp_u32 half_range = 1u << (bits - 1u);
-    hdrp_u32 x = hdrp_u32_from_f32(code.x);
-    hdrp_u32 y = hdrp_u32_from_f32(code.y);
-    return (n.x < 0.0f ? half_range - 1u - x : half_range + x) |
-           ((n.y < 0.0f ? half_range - 1u - y : half_range + y) << bits);
+    float middle = hdrp_f32_from_u32(1u << (bits - 1u)) - 0.5f;
+    hdrp_u32 up = (1u << (bits - 1u)) | (1u << (2u * bits - 1u));
+    hdrp_u32 x = hdrp_i_pack_u32_from_whole(middle + hdrp_i_pack_with_sign(code.x + 0.5f, n.x));
+    hdrp_u32 y = hdrp_i_pack_u32_from_whole(middle + hdrp_i_pack_with_sign(code.y + 0.5f, n.y));
+    return hdrp_i_pack_oct_known(x | (y << bits), n, up);
 }
 
 /* The largest magnitude of a code. */
@@ -572,10 +601,9 @@ HDRP_FN float hdrp_i_pack_oct_last(hdrp_u32 bits)
  *           1 */
 HDRP_FN hdrp_u32 hdrp_pack_oct_snorm_from_normal(hdrp_v3 n, hdrp_u32 bits)
 {
-    hdrp_v3 d = hdrp_i_pack_oct_direction(n);
     float last = hdrp_i_pack_oct_last(bits);
-    hdrp_v2 p = hdrp_i_pack_oct_project(d, last);
-    return hdrp_i_pack_oct_snorm_code(hdrp_i_pack_oct_round(p, d.z, last, 0.0f), d, bits);
+    hdrp_v2 p = hdrp_i_pack_oct_project(n, last);
+    return hdrp_i_pack_oct_snorm_code(hdrp_i_pack_oct_round(p, n.z, last, 0.0f), n, bits);
 }
 
 /** Octahedral code of a normal, SNORM, the best of the codes around it.
@@ -594,10 +622,9 @@ HDRP_FN hdrp_u32 hdrp_pack_oct_snorm_from_normal(hdrp_v3 n, hdrp_u32 bits)
  *           down: UNORM, which has no such codes, is better there */
 HDRP_FN hdrp_u32 hdrp_pack_oct_snorm_from_normal_exact(hdrp_v3 n, hdrp_u32 bits)
 {
-    hdrp_v3 d = hdrp_i_pack_oct_direction(n);
     float last = hdrp_i_pack_oct_last(bits);
-    hdrp_v2 p = hdrp_i_pack_oct_project(d, last);
-    return hdrp_i_pack_oct_snorm_code(hdrp_i_pack_oct_search(p, d, last, 0.0f), d, bits);
+    hdrp_v2 p = hdrp_i_pack_oct_project(n, last);
+    return hdrp_i_pack_oct_snorm_code(hdrp_i_pack_oct_search(p, n, last, 0.0f), n, bits);
 }
 
 /** Unit normal of an SNORM octahedral code.
@@ -628,10 +655,9 @@ HDRP_FN hdrp_v3 hdrp_pack_normal_from_oct_snorm(hdrp_u32 code, hdrp_u32 bits)
  *  note     truncating, as floor(u * 4095.5) does for UNORM 12, errs by up to 0.108 degrees */
 HDRP_FN hdrp_u32 hdrp_pack_oct_unorm_from_normal(hdrp_v3 n, hdrp_u32 bits)
 {
-    hdrp_v3 d = hdrp_i_pack_oct_direction(n);
     float last = hdrp_i_pack_oct_last(bits);
-    hdrp_v2 p = hdrp_i_pack_oct_project(d, last + 0.5f);
-    return hdrp_i_pack_oct_unorm_code(hdrp_i_pack_oct_round(p, d.z, last, 0.5f), d, bits);
+    hdrp_v2 p = hdrp_i_pack_oct_project(n, last + 0.5f);
+    return hdrp_i_pack_oct_unorm_code(hdrp_i_pack_oct_round(p, n.z, last, 0.5f), n, bits);
 }
 
 /** Octahedral code of a normal, UNORM, the best of the codes around it.
@@ -646,10 +672,9 @@ HDRP_FN hdrp_u32 hdrp_pack_oct_unorm_from_normal(hdrp_v3 n, hdrp_u32 bits)
  *           Vectors", listing 4 (precise encoding) */
 HDRP_FN hdrp_u32 hdrp_pack_oct_unorm_from_normal_exact(hdrp_v3 n, hdrp_u32 bits)
 {
-    hdrp_v3 d = hdrp_i_pack_oct_direction(n);
     float last = hdrp_i_pack_oct_last(bits);
-    hdrp_v2 p = hdrp_i_pack_oct_project(d, last + 0.5f);
-    return hdrp_i_pack_oct_unorm_code(hdrp_i_pack_oct_search(p, d, last, 0.5f), d, bits);
+    hdrp_v2 p = hdrp_i_pack_oct_project(n, last + 0.5f);
+    return hdrp_i_pack_oct_unorm_code(hdrp_i_pack_oct_search(p, n, last, 0.5f), n, bits);
 }
 
 /** Unit normal of a UNORM octahedral code.

@@ -45,6 +45,16 @@ static void basis_is_exact_on_the_axes(void** state)
     expect_v3(hdrp_v3_cross(down.tangent, down.bitangent), 0.0f, 0.0f, -1.0f);
 }
 
+static void select_takes_the_first_where_the_condition_is_positive(void** state)
+{
+    (void)state;
+    hdrp_v3 a = hdrp_v3_make(1.0f, 2.0f, 3.0f), b = hdrp_v3_make(-4.0f, -5.0f, -6.0f);
+    expect_v3(hdrp_v3_select(1e-30f, a, b), 1.0f, 2.0f, 3.0f);
+    expect_v3(hdrp_v3_select(0.0f, a, b), -4.0f, -5.0f, -6.0f);
+    expect_v3(hdrp_v3_select(-1.0f, a, b), -4.0f, -5.0f, -6.0f);
+    expect_v3(hdrp_v3_select(NAN, a, b), -4.0f, -5.0f, -6.0f);
+}
+
 static void limits_give_the_safe_bound_for_nan(void** state)
 {
     (void)state;
@@ -62,6 +72,7 @@ int main(void)
         cmocka_unit_test(normalize_or_takes_the_fallback),
         cmocka_unit_test(normalize_or_keeps_extreme_lengths),
         cmocka_unit_test(basis_is_exact_on_the_axes),
+        cmocka_unit_test(select_takes_the_first_where_the_condition_is_positive),
         cmocka_unit_test(limits_give_the_safe_bound_for_nan),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
