@@ -37,7 +37,7 @@ SAMPLED = {"sign": 6, "comparison": 4, "factor": 8}
 # marked in exclusions.txt.
 FINE, COARSE = 1e-3, 1e-2
 # Of exclusions.txt; all but the last leave a place as it is.
-WORDS = ("guard", "limit", "language", "choice", "coarse")
+WORDS = ("guard", "limit", "same", "coarse")
 
 
 @dataclass

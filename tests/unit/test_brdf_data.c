@@ -53,6 +53,14 @@ static void features_of_the_default_surface_have_usual_values(void** state)
     assert_true(s.film_ior == 1.3f && s.film_thickness_nm == 400.0f);
 }
 
+static void each_channel_of_a_dielectric_has_its_own_tint(void** state)
+{
+    (void)state;
+    hdrp_v3 f0 = hdrp_brdf_dielectric_fresnel0(1.5f, hdrp_v3_make(0.5f, 1.0f, 2.0f), 0.5f);
+    assert_true(fabsf(f0.x - 0.01f) < 1e-7f && fabsf(f0.y - 0.02f) < 1e-7f);
+    assert_true(fabsf(f0.z - 0.04f) < 1e-7f);
+}
+
 static void nan_becomes_the_lower_bound(void** state)
 {
     (void)state;
@@ -110,6 +118,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_default_surface_is_a_grey_dielectric),
         cmocka_unit_test(features_of_the_default_surface_have_usual_values),
+        cmocka_unit_test(each_channel_of_a_dielectric_has_its_own_tint),
         cmocka_unit_test(nan_becomes_the_lower_bound),
         cmocka_unit_test(huge_values_are_limited),
         cmocka_unit_test(the_tangent_is_made_orthogonal),

@@ -502,7 +502,22 @@ static void an_exact_film_leaves_the_diffuse_lobe_what_it_does_not_reflect(void*
             double left = bt_component(d.diffuse_color, c) * (1.0 - reflected);
             expect_near(bt_component(w.specular_albedo, c), reflected, 2e-4, "film", f);
             expect_near(bt_component(w.diffuse_albedo, c), left, 2e-4, "below it", f);
+            expect_near(bt_component(w.diffuse, c) * BQ_PI * m.mean_share[c], left, 2e-4,
+                        "the lobe below it", f);
         }
+    }
+}
+
+/* A table may say that the specular lobe reflects more than the fit does. */
+static void nothing_is_left_below_a_lobe_that_reflects_all(void** state)
+{
+    const hdrp_brdf_fgd all = {1.0f, 1.0f};
+    hdrp_brdf_data d = hdrp_brdf_data_from_surface(bt_surface(1.0f, 0.0f, 0.04f, 0.6f));
+    hdrp_brdf_lit_view w = hdrp_brdf_lit_view_make(d, d.normal, all, 0u);
+    (void)state;
+    for (int c = 0; c < 3; ++c) {
+        assert_true(bt_component(w.specular_albedo, c) == 1.0);
+        assert_true(bt_component(w.diffuse_albedo, c) == 0.0);
     }
 }
 
@@ -623,6 +638,7 @@ int main(void)
         cmocka_unit_test(every_light_is_shaded_by_the_layers_that_it_meets),
         cmocka_unit_test(the_environment_is_weighted_by_what_each_layer_reflects),
         cmocka_unit_test(an_exact_film_leaves_the_diffuse_lobe_what_it_does_not_reflect),
+        cmocka_unit_test(nothing_is_left_below_a_lobe_that_reflects_all),
         cmocka_unit_test(lobes_are_drawn_in_proportion_to_their_light),
         cmocka_unit_test(a_smooth_wall_is_drawn_straight_through),
     };

@@ -291,6 +291,33 @@ static void windowing_keeps_a_lone_sun_positive(void** state)
     free(image.texels);
 }
 
+/* A row of the image that holds the direction of some point of the rows to write is visited. */
+static void no_row_is_missed_that_touches_the_target(void** state)
+{
+    (void)state;
+    const uint32_t n = 64u, ends[][2] = {{0, 64}, {0, 1}, {63, 64}, {20, 30}, {31, 33}, {40, 64}};
+    for (uint32_t face = 0; face < 6u; ++face) {
+        for (int k = 0; k < 6; ++k) {
+            hdrp_i_env_target target = {0};
+            target.face = face;
+            target.size = n;
+            target.first_row = ends[k][0];
+            target.end_row = ends[k][1];
+            for (int i = 0; i <= 256 * 64; ++i) {
+                /* All of the width, the rows from one end to the other, but for a rounding. */
+                double s = (i % 257 / 128.0 - 1.0) * (1.0 - 1e-6), t = (i / 257 / 63.0) * 0.9998;
+                t = (ends[k][0] + (ends[k][1] - ends[k][0]) * (t + 1e-4)) * 2.0 / n - 1.0;
+                hdrp_v3 p = hdrp_env_point_from_cube(face, (float)s, (float)t);
+                double polar = atan2(hypot((double)p.x, (double)p.z), (double)p.y);
+                double from = polar - 1e-7, to = polar + 1e-7;
+                double sines[2] = {sin(from), sin(to)}, cosines[2] = {cos(from), cos(to)};
+                assert_true(from < 0.0 || to > TEST_PI ||
+                            hdrp_i_env_row_sees(&target, sines, cosines));
+            }
+        }
+    }
+}
+
 /* A clamped cosine to order 2 is 1/4 + c / 2 + 5/32 (3 c^2 - 1). */
 static void harmonics_of_a_lamp_are_those_of_a_clamped_cosine(void** state)
 {
@@ -525,6 +552,7 @@ int main(void)
         cmocka_unit_test(a_black_sky_is_black),
         cmocka_unit_test(a_lamp_is_spread_by_the_lobe),
         cmocka_unit_test(windowing_keeps_a_lone_sun_positive),
+        cmocka_unit_test(no_row_is_missed_that_touches_the_target),
         cmocka_unit_test(harmonics_of_a_lamp_are_those_of_a_clamped_cosine),
         cmocka_unit_test(a_texel_spreads_its_light_as_a_square),
         cmocka_unit_test(the_series_ends_where_a_part_is_wider_than_the_lobe),
