@@ -8,13 +8,15 @@ k is switched on, so that one program holds all mutants: nothing is compiled aga
 they change no bit of a result. Signs, comparisons, products and quotients are wrapped in the same
 way, on a sample of the places where they occur.
 
-Constants that are guards or limits are left out by name: tests/mutation/exclusions.txt says which
-and why. Zeros and integers have no relative error to make.
+Guards and limits are left out: literals that are an argument of LIMITERS, and what
+tests/mutation/exclusions.txt names, with the reason. Zeros and integers have no relative error to
+make.
 """
 import pathlib
 import re
 import sys
 import zlib
+from collections import Counter
 from dataclasses import dataclass
 
 import hdrp_api
@@ -26,11 +28,16 @@ SIGN = re.compile(r"(?<![-+eE])[-+](?![-+=>])|(?<=[A-Za-z_]e)[-+](?![-+=>])")
 COMPARISON = re.compile(r"(?<![<>=!-])(?:<=|>=|<|>)(?![<>=])")
 FACTOR = re.compile(r"(?<=[\w)\]] )([*/]) (?=[\w(])")
 
+# A literal that is a whole argument of these is a limit.
+LIMITERS = re.compile(r"(?<!\w)hdrp_(?:clamp|min|max)$")
+
 # One operator in so many is tried.
 SAMPLED = {"sign": 6, "comparison": 4, "factor": 8}
 # Relative changes of a constant. Coefficients of a fit that is itself wrong by a percent are
 # marked in exclusions.txt.
 FINE, COARSE = 1e-3, 1e-2
+# Of exclusions.txt; all but the last leave a place as it is.
+WORDS = ("guard", "limit", "same", "coarse")
 
 
 @dataclass
@@ -48,14 +55,28 @@ class Mutant:
         return f"{self.owner} {self.text} {self.occurrence}"
 
 
-def exclusions():
-    """name -> word, which is 'guard', 'limit', 'language' or 'coarse'."""
-    found = {}
-    for line in EXCLUSIONS.read_text().split("\n"):
-        line = line.split("#")[0].split()
-        if line:
-            found[line[1]] = line[0]
-    return found
+class Exclusions:
+    """What exclusions.txt says: words by owner, by owner and text, or by the key of one mutant."""
+
+    def __init__(self, text):
+        self.words, self.used, self.counts = {}, set(), Counter()
+        for line in text.split("\n"):
+            word, *name = line.split("#")[0].split() or [""]
+            if word and word not in WORDS:
+                sys.exit(f"mutate: no such word: {line}")
+            if word:
+                self.words[" ".join(name)] = word
+
+    def word(self, mutant):
+        """The word for a mutant, the most particular first, or ""."""
+        for name in (mutant.key, f"{mutant.owner} {mutant.text}", mutant.owner):
+            if name in self.words:
+                self.used.add(name)
+                return self.words[name]
+        return ""
+
+    def unused(self):
+        return sorted(set(self.words) - self.used)
 
 
 def bodies(code):
@@ -121,6 +142,18 @@ def expression_around(code, start, end):
     return left + 1, right
 
 
+def is_limit(code, start, end):
+    """Whether the literal at start..end is, but for a sign, a whole argument of LIMITERS."""
+    before = code[:start].rstrip(" \n-")
+    if code[end:].lstrip()[:1] not in (",", ")") or before[-1:] not in ("(", ","):
+        return False
+    depth, at = 0, len(before) - 1
+    while depth or code[at] not in "({};":
+        depth += {")": 1, "(": -1}.get(code[at], 0)
+        at -= 1
+    return code[at] == "(" and bool(LIMITERS.search(code, 0, at))
+
+
 def is_sampled(mutant):
     return zlib.crc32(mutant.key.encode()) % SAMPLED[mutant.kind] == 0
 
@@ -131,15 +164,21 @@ class Mutator:
     def __init__(self, header, excluded, first):
         self.header, self.excluded, self.first = header, excluded, first
         self.code = header.code
-        self.mutants, self.edits, self.seen = [], [], {}
+        self.mutants, self.edits, self.seen = [], [], Counter()
 
-    def add(self, offset, owner, kind, text, edits):
-        key = (owner, text)
-        self.seen[key] = self.seen.get(key, 0) + 1
-        mutant = Mutant(self.header.name, self.header.line_of(offset), owner, kind, text,
-                        self.seen[key])
+    def add(self, place, owner, kind, edits):
+        text = self.code[slice(*place)]
+        self.seen[owner, text] += 1
+        mutant = Mutant(self.header.name, self.header.line_of(place[0]), owner, kind, text,
+                        self.seen[owner, text])
+        word = self.excluded.word(mutant)
+        if kind == "constant" and not word and is_limit(self.code, *place):
+            word = "limit"
+        if word and word != "coarse":
+            self.excluded.counts[word] += kind == "constant"
+            return
         if kind == "constant":
-            mutant.amount = COARSE if self.excluded.get(owner) == "coarse" else FINE
+            mutant.amount = COARSE if word == "coarse" else FINE
         elif not is_sampled(mutant):
             return
         number = self.first + len(self.mutants)
@@ -149,7 +188,7 @@ class Mutator:
     def constants(self, owner, start, end):
         for match in LITERAL.finditer(self.code, start, end):
             if float(match[0].rstrip("f")) != 0.0:
-                self.add(match.start(), owner, "constant", match[0],
+                self.add(match.span(), owner, "constant",
                          [(match.start(), match.start(), "HDRP_MUTANT_SCALE({k}, "),
                           (match.end(), match.end(), ")")])
 
@@ -158,25 +197,23 @@ class Mutator:
             line = self.code[self.code.rfind("\n", 0, match.start()):match.start()]
             if "case " not in line and "#" not in line and not \
                     LITERAL_EXPONENT.search(self.code[match.start() - 4:match.start() + 1]):
-                self.add(match.start(), owner, "sign", match[0],
+                self.add(match.span(), owner, "sign",
                          [(match.end(), match.end(), " HDRP_MUTANT_SIGN({k}) *")])
         for match in COMPARISON.finditer(self.code, start, end):
             around = expression_around(self.code, match.start(), match.end())
             if around and around[0] > start and around[1] < end:
-                self.add(match.start(), owner, "comparison", match[0],
+                self.add(match.span(), owner, "comparison",
                          [(around[0], around[0], " HDRP_MUTANT_NOT({k}, "),
                           (around[1], around[1], ")")])
         for match in FACTOR.finditer(self.code, start, end):
             stop = operand_end(self.code, match.end())
             if stop > match.end() and self.code[match.end():match.end() + 2] != "(h":
-                self.add(match.start(), owner, "factor", match[1],
+                self.add(match.span(1), owner, "factor",
                          [(match.end(), match.end(), "HDRP_MUTANT_RECIPROCAL({k}, "),
                           (stop, stop, ")")])
 
     def run(self):
         for owner, start, end, is_formula in bodies(self.code):
-            if self.excluded.get(owner) in ("guard", "limit", "language"):
-                continue
             self.constants(owner, start, end)
             if is_formula:
                 self.operators(owner, start, end)
@@ -199,7 +236,7 @@ def main():
         sys.exit(__doc__.split("\n")[0])
     folder = pathlib.Path(sys.argv[1])
     folder.mkdir(parents=True, exist_ok=True)
-    excluded, mutants = exclusions(), []
+    excluded, mutants = Exclusions(EXCLUSIONS.read_text()), []
     for path in hdrp_api.headers():
         mutator = Mutator(hdrp_api.header(path), excluded, len(mutants) + 1)
         mutator.run()
@@ -212,6 +249,9 @@ def main():
     (folder / "mutants.inc").write_text("\n".join(rows) + "\n")
     kinds = [m.kind for m in mutants]
     print(", ".join(f"{kinds.count(kind)} {kind}s" for kind in sorted(set(kinds))))
+    print("left out: " + ", ".join(f"{n} {word}s" for word, n in sorted(excluded.counts.items())))
+    if excluded.unused():
+        sys.exit(f"mutate: {EXCLUSIONS.name} names what is not there: {excluded.unused()}")
 
 
 if __name__ == "__main__":

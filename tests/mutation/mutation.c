@@ -1,11 +1,12 @@
-/* mutation.c - would the registry notice? mutation [--part I N] OUTPUT.csv
+/* mutation.c - would the registry notice? mutation [--part I N] [--only TEXT] OUTPUT.csv
  * SPDX-License-Identifier: MIT
  *
  * Built against headers in which tools/mutate.py has made every constant a possible fault. Each
  * entry of the registry runs once to learn its result and which faults it can see; then each fault
  * is switched on, and the entries that see it run, the quickest first, until one notices: its error
  * exceeds the claim, a result is not finite, or the maximum or the mean differ from what they were
- * in three digits, which is what the record of the registry holds them to. */
+ * in three digits, which is what the record of the registry holds them to. --only tries faults
+ * whose header or key holds a text. */
 #include "mutant.h"
 
 #define main accuracy_main
@@ -136,17 +137,24 @@ static const char* verdict(int k, int seconds)
 
 int main(int argc, char** argv)
 {
-    int part = 0, parts = 1;
-    if (argc == 5 && strcmp(argv[1], "--part") == 0) {
-        part = atoi(argv[2]);
-        parts = atoi(argv[3]);
-    } else if (argc != 2) {
-        fprintf(stderr, "usage: mutation [--part I N] OUTPUT.csv\n");
+    int part = 0, parts = 1, at = 1;
+    const char* only = "";
+    if (at + 3 < argc && strcmp(argv[at], "--part") == 0) {
+        part = atoi(argv[at + 1]);
+        parts = atoi(argv[at + 2]);
+        at += 3;
+    }
+    if (at + 2 < argc && strcmp(argv[at], "--only") == 0) {
+        only = argv[at + 1];
+        at += 2;
+    }
+    if (at + 1 != argc) {
+        fprintf(stderr, "usage: mutation [--part I N] [--only TEXT] OUTPUT.csv\n");
         return 2;
     }
-    FILE* csv = fopen(argv[argc - 1], "w");
+    FILE* csv = fopen(argv[at], "w");
     if (!csv) {
-        fprintf(stderr, "mutation: cannot write %s\n", argv[argc - 1]);
+        fprintf(stderr, "mutation: cannot write %s\n", argv[at]);
         return 1;
     }
     learn();
@@ -158,6 +166,9 @@ int main(int argc, char** argv)
     for (int k = 1 + part; k <= MUTANT_COUNT; k += parts) {
         const mutant_info* m = &mutants[k - 1];
         int reached = 0;
+        if (!strstr(m->header, only) && !strstr(m->key, only)) {
+            continue;
+        }
         for (int i = 0; i < entry_count; ++i) {
             reached += entries[i].reached[k];
         }

@@ -235,6 +235,38 @@ static void samples_stay_above_the_surface_at_the_ends(void** state)
     }
 }
 
+/* The slopes of a GGX surface seen head on are those of all its normals: the share of them below a
+ * slope s is s^2 / (s^2 + alpha^2). */
+static void a_view_along_the_normal_draws_slopes_of_a_known_share(void** state)
+{
+    hdrp_v3 v = hdrp_v3_make(0.0f, 0.0f, 1.0f);
+    (void)state;
+    for (float alpha = 0.1f; alpha < 1.0f; alpha += 0.2f) {
+        for (float u = 0.1f; u < 1.0f; u += 0.1f) {
+            hdrp_v3 h = hdrp_brdf_sample_vndf(v, alpha, alpha, hdrp_v2_make(0.125f, u));
+            double slope = hypot((double)h.x, (double)h.y) / (double)h.z;
+            double share = slope * slope / (slope * slope + (double)alpha * (double)alpha);
+            assert_true(fabs(share - (double)u) < 2e-6);
+            assert_true(fabsf(h.x - h.y) < 1e-6f);
+        }
+    }
+}
+
+/* A surface of width 1 is a hemisphere, which mirrors a view evenly into the cap of all heights from
+ * 1 down to that of the mirrored view. */
+static void a_hemisphere_mirrors_its_view_evenly(void** state)
+{
+    (void)state;
+    for (double c = 0.1; c < 1.0; c += 0.2) {
+        hdrp_v3 v = bt_direction(c, 1.0);
+        for (float u = 0.1f; u < 1.0f; u += 0.1f) {
+            hdrp_v3 h = hdrp_brdf_sample_vndf(v, 1.0f, 1.0f, hdrp_v2_make(0.3f, u));
+            double height = 2.0 * (double)hdrp_v3_dot(v, h) * (double)h.z - c;
+            assert_true(fabs((1.0 - height) / (1.0 + c) - (double)u) < 2e-6);
+        }
+    }
+}
+
 static void kulla_widths_have_the_mean_of_the_roughness(void** state)
 {
     (void)state;
@@ -299,6 +331,8 @@ int main(void)
         cmocka_unit_test(the_sampled_density_integrates_to_what_stays_above),
         cmocka_unit_test(samples_follow_their_density),
         cmocka_unit_test(samples_stay_above_the_surface_at_the_ends),
+        cmocka_unit_test(a_view_along_the_normal_draws_slopes_of_a_known_share),
+        cmocka_unit_test(a_hemisphere_mirrors_its_view_evenly),
         cmocka_unit_test(kulla_widths_have_the_mean_of_the_roughness),
         cmocka_unit_test(gltf_anisotropy_converts),
         cmocka_unit_test(the_environment_lobe_bends_towards_the_view),

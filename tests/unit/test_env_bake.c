@@ -291,6 +291,122 @@ static void windowing_keeps_a_lone_sun_positive(void** state)
     free(image.texels);
 }
 
+/* A row of the image that holds the direction of some point of the rows to write is visited. */
+static void no_row_is_missed_that_touches_the_target(void** state)
+{
+    (void)state;
+    const uint32_t n = 64u, ends[][2] = {{0, 64}, {0, 1}, {63, 64}, {20, 30}, {31, 33}, {40, 64}};
+    for (uint32_t face = 0; face < 6u; ++face) {
+        for (int k = 0; k < 6; ++k) {
+            hdrp_i_env_target target = {0};
+            target.face = face;
+            target.size = n;
+            target.first_row = ends[k][0];
+            target.end_row = ends[k][1];
+            for (int i = 0; i <= 256 * 64; ++i) {
+                /* All of the width, the rows from one end to the other, but for a rounding. */
+                double s = (i % 257 / 128.0 - 1.0) * (1.0 - 1e-6), t = (i / 257 / 63.0) * 0.9998;
+                t = (ends[k][0] + (ends[k][1] - ends[k][0]) * (t + 1e-4)) * 2.0 / n - 1.0;
+                hdrp_v3 p = hdrp_env_point_from_cube(face, (float)s, (float)t);
+                double polar = atan2(hypot((double)p.x, (double)p.z), (double)p.y);
+                double from = polar - 1e-7, to = polar + 1e-7;
+                double sines[2] = {sin(from), sin(to)}, cosines[2] = {cos(from), cos(to)};
+                assert_true(from < 0.0 || to > TEST_PI ||
+                            hdrp_i_env_row_sees(&target, sines, cosines));
+            }
+        }
+    }
+}
+
+/* A clamped cosine to order 2 is 1/4 + c / 2 + 5/32 (3 c^2 - 1). */
+static void harmonics_of_a_lamp_are_those_of_a_clamped_cosine(void** state)
+{
+    (void)state;
+    const uint32_t n = 128u, texels[] = {17u * 128u + 40u, 90u * 128u + 100u, 64u * 128u + 3u};
+    uint64_t random = 10u;
+    for (uint32_t i = 0; i < 6u; ++i) {
+        hdrp_env_image image = test_image(HDRP_ENV_CUBE, n, n, 0.0f);
+        void* memory;
+        hdrp_env env = make_env(make_desc(n, 1u, 1u), &memory);
+        uint32_t k = texels[i % 3u];
+        hdrp_env_place place = {i, ((float)(k % n) + 0.5f) / (float)n,
+                                ((float)(k / n) + 0.5f) / (float)n};
+        hdrp_v3 lamp = hdrp_env_direction_from_cube(place);
+        double lux = 1000.0 * (double)hdrp_env_cube_solid_angle(k % n, k / n, n);
+        hdrp_env_sh sh;
+        image.texels[3u * (i * n * n + k) + 1u] = 1000.0f;
+        assert_int_equal(hdrp_env_resample(&env, &image, 0u, 6u * n), HDRP_OK);
+        assert_int_equal(hdrp_env_reduce(&env, 0u, 6u), HDRP_OK);
+        assert_int_equal(hdrp_env_project_sh(&env, &sh), HDRP_OK);
+        for (int j = 0; j < 200; ++j) {
+            hdrp_v3 normal = test_direction(&random);
+            double c = (double)hdrp_v3_dot(normal, lamp);
+            double expected = 0.25 + 0.5 * c + 5.0 / 32.0 * (3.0 * c * c - 1.0);
+            double measured = (double)hdrp_env_irradiance_fast(sh, normal).y / lux;
+            test_near(measured, fmax(expected, 0.0), 2e-5);
+        }
+        free(memory);
+        free(image.texels);
+    }
+}
+
+/* Moments of the directions in a texel near the middle of a face, where it is a square. */
+static void a_texel_spreads_its_light_as_a_square(void** state)
+{
+    (void)state;
+    const uint32_t n = 256u;
+    void* memory;
+    hdrp_env env = make_env(make_desc(n, 1u, 1u), &memory);
+    hdrp_env_image image = test_image(HDRP_ENV_CUBE, n, n, 1.0f);
+    assert_int_equal(hdrp_env_resample(&env, &image, 0u, 6u * n), HDRP_OK);
+    for (uint32_t face = 0; face < 6u; ++face) {
+        hdrp_env_node place;
+        double m2[3] = {0.0, 0.0, 0.0}, m[3] = {0.0, 0.0, 0.0};
+        const hdrp_env_node* node =
+            hdrp_i_env_node_at(&env, 0u, (size_t)(face * n + n / 2u) * n + n / 2u, &place);
+        double spread[3] = {(double)node->light.xx, (double)node->light.yy, (double)node->light.zz};
+        for (int i = 0; i < 32 * 32; ++i) {
+            double s = 2.0 / n * (i % 32 + 0.5) / 32.0, t = 2.0 / n * (i / 32 + 0.5) / 32.0;
+            hdrp_v3 p = hdrp_env_point_from_cube(face, (float)s, (float)t);
+            double x[3] = {(double)p.x, (double)p.y, (double)p.z};
+            double length = sqrt(1.0 + s * s + t * t);
+            for (int c = 0; c < 3; ++c) {
+                m[c] += x[c] / length / 1024.0;
+                m2[c] += x[c] * x[c] / (length * length) / 1024.0;
+            }
+        }
+        for (int c = 0; c < 3; ++c) {
+            /* Exact but for the samples, which lack a thousandth of the variance. */
+            double expected = (m2[c] - m[c] * m[c]) / (1.0 - 1.0 / (32.0 * 32.0));
+            test_near(spread[c], expected, 2e-4 * pow(2.0 / n, 2.0) / 12.0);
+        }
+    }
+    free(memory);
+    free(image.texels);
+}
+
+/* Beyond a spread of 1 / (4 m r) the series would turn negative: it stays what it is there. */
+static void the_series_ends_where_a_part_is_wider_than_the_lobe(void** state)
+{
+    (void)state;
+    hdrp_env_desc desc = make_desc(8u, 8u, 2u);
+    void* memory;
+    hdrp_env env = make_env(desc, &memory);
+    hdrp_i_env_lobe lobe = hdrp_i_env_lobe_make(&env, 0.001f);
+    hdrp_v3 middle = hdrp_v3_make(0.002f, 1.0f, 0.0f);
+    lobe.axis = hdrp_v3_make(0.0f, 1.0f, 0.0f);
+    /* d.d and 4 a are 4e-6 each, so that 1 / r is 8e-6; the cosine is 1 within 2e-5. */
+    double limit = 0.25 * 8e-6;
+    double value[2];
+    for (int i = 0; i < 2; ++i) {
+        float xx = (float)(limit * (i == 0 ? 0.99999 : 10.0));
+        hdrp_env_spread part = {middle, xx, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+        value[i] = (double)hdrp_i_env_kernel(&lobe, &part).value;
+    }
+    test_near(value[1] / value[0], 1.0, 1e-4);
+    free(memory);
+}
+
 static void bad_descriptions_and_blocks_are_refused(void** state)
 {
     (void)state;
@@ -436,6 +552,10 @@ int main(void)
         cmocka_unit_test(a_black_sky_is_black),
         cmocka_unit_test(a_lamp_is_spread_by_the_lobe),
         cmocka_unit_test(windowing_keeps_a_lone_sun_positive),
+        cmocka_unit_test(no_row_is_missed_that_touches_the_target),
+        cmocka_unit_test(harmonics_of_a_lamp_are_those_of_a_clamped_cosine),
+        cmocka_unit_test(a_texel_spreads_its_light_as_a_square),
+        cmocka_unit_test(the_series_ends_where_a_part_is_wider_than_the_lobe),
         cmocka_unit_test(bad_descriptions_and_blocks_are_refused),
         cmocka_unit_test(bad_ranges_are_refused_and_write_nothing),
         cmocka_unit_test(the_layout_of_harmonics_is_the_documented_one),

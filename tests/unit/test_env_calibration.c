@@ -242,6 +242,7 @@ static void the_sun_is_found_and_removed(void** state)
         assert_int_equal(hdrp_env_measure(&image, &before), HDRP_OK);
         assert_int_equal(hdrp_env_find_sun(&image, 0.0f, &sun), HDRP_OK);
         assert_true(hdrp_v3_dot(sun.direction, s) > 0.99998f); /* half a texel */
+        test_near(acos((double)sun.cos_radius), 0.035, 3e-6);  /* two degrees, as documented */
         test_near((double)sun.solid_angle_sr / solid_angle, 1.0, 1e-6);
         test_near((double)sun.illuminance_lux.y / (1e5 * (double)sun.solid_angle_sr), 1.0, 1e-3);
         test_near((double)sun.illuminance_lux.x / (double)sun.illuminance_lux.z, 4.0, 1e-3);
@@ -287,7 +288,7 @@ static void dark_texels_near_the_sun_stay(void** state)
     free(image.texels);
 }
 
-/* One texel at the peak, one at 0.55 of it, one at 0.45, which is not part of the disc of light. */
+/* One texel at the peak, one just above half of it, one just below, which is not part of the disc of light. */
 static void the_solid_angle_of_a_sun_ends_at_half_its_peak(void** state)
 {
     (void)state;
@@ -295,7 +296,7 @@ static void the_solid_angle_of_a_sun_ends_at_half_its_peak(void** state)
     hdrp_env_sun sun = {0};
     for (uint32_t i = 0; i < 3u; ++i) {
         float* texel = image.texels + 3u * (180u * 30u + 90u + i);
-        texel[0] = texel[1] = texel[2] = i == 0u ? 1000.0f : i == 1u ? 550.0f : 450.0f;
+        texel[0] = texel[1] = texel[2] = i == 0u ? 1000.0f : i == 1u ? 500.2f : 499.8f;
     }
     assert_int_equal(hdrp_env_find_sun(&image, 0.2f, &sun), HDRP_OK);
     test_near((double)sun.solid_angle_sr /

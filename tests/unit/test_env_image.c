@@ -249,6 +249,40 @@ static void lookups_are_continuous_over_the_seam_and_through_the_poles(void** st
     free(image.texels);
 }
 
+/* A big cube without texels of its own but where a test writes them. */
+static void texels_across_an_edge_are_half_a_texel_below_it(void** state)
+{
+    const uint32_t n = 1024u;
+    hdrp_env_image image = {.kind = HDRP_ENV_CUBE, .width = n, .height = n};
+    (void)state;
+    image.texels = calloc((size_t)18u * n * n, sizeof(float));
+    assert_non_null(image.texels);
+    for (uint32_t k = 0; k < 6u * n * n; ++k) {
+        uint32_t x = k % n, y = k / n % n;
+        if (x == 0u || x == n - 1u || y == 0u || y == n - 1u) {
+            image.texels[3u * k] = (float)k; /* exact: below 2^24 */
+        }
+    }
+    for (uint32_t k = 0; k < 24u * n; ++k) {
+        uint32_t face = k / n / 4u, side = k / n % 4u, end = side % 2u ? n - 1u : 0u;
+        int x = (int)(side < 2u ? end : k % n), y = (int)(side < 2u ? k % n : end);
+        int step = side % 2u ? 1 : -1;
+        uint32_t found = (uint32_t)hdrp_i_image_read_across(&image, face, side < 2u ? x + step : x,
+                                                            side < 2u ? y : y + step)
+                             .x;
+        hdrp_v3 here = hdrp_env_point_from_cube(face, (2.0f * (float)x + 1.0f) / (float)n - 1.0f,
+                                                (2.0f * (float)y + 1.0f) / (float)n - 1.0f);
+        hdrp_v3 there = hdrp_env_point_from_cube(
+            found / n / n, (2.0f * (float)(found % n) + 1.0f) / (float)n - 1.0f,
+            (2.0f * (float)(found / n % n) + 1.0f) / (float)n - 1.0f);
+        /* Both middles are half a texel, 1 / n, from the edge and at right angles. */
+        double apart = (double)hdrp_v3_length(hdrp_v3_sub(here, there)) * n;
+        assert_true(found / n / n != face);
+        test_near(apart, sqrt(2.0), 0.01);
+    }
+    free(image.texels);
+}
+
 static void lookups_at_texel_centres_read_the_texel(void** state)
 {
     (void)state;
@@ -292,6 +326,7 @@ int main(void)
         cmocka_unit_test(openexr_panoramas_lose_a_row_and_a_column),
         cmocka_unit_test(lookups_are_continuous_over_every_edge_and_corner),
         cmocka_unit_test(lookups_are_continuous_over_the_seam_and_through_the_poles),
+        cmocka_unit_test(texels_across_an_edge_are_half_a_texel_below_it),
         cmocka_unit_test(lookups_at_texel_centres_read_the_texel),
         cmocka_unit_test(lookups_of_the_smallest_images_and_bad_directions_are_finite),
     };

@@ -105,6 +105,15 @@ static void openexr_faces_are_mirrored_and_mirroring_is_its_own_inverse(void** s
     }
 }
 
+static void texels_beyond_a_face_count_as_its_last(void** state)
+{
+    (void)state;
+    float last = hdrp_env_cube_solid_angle(7u, 7u, 8u);
+    assert_true(hdrp_env_cube_solid_angle(8u, 9u, 8u) == last);
+    assert_true(hdrp_env_cube_solid_angle(65535u, 7u, 8u) == last);
+    assert_true(hdrp_env_cube_solid_angle(7u, 65535u, 8u) == last);
+}
+
 static void solid_angles_add_up_to_the_sphere(void** state)
 {
     (void)state;
@@ -161,6 +170,7 @@ int main(void)
         cmocka_unit_test(cube_round_trip_returns_the_direction),
         cmocka_unit_test(cube_places_are_total),
         cmocka_unit_test(openexr_faces_are_mirrored_and_mirroring_is_its_own_inverse),
+        cmocka_unit_test(texels_beyond_a_face_count_as_its_last),
         cmocka_unit_test(solid_angles_add_up_to_the_sphere),
         cmocka_unit_test(cosine_weights_add_up_to_pi),
         cmocka_unit_test(a_row_across_the_horizon_counts_its_upper_part),

@@ -189,6 +189,53 @@ static void building_does_not_depend_on_the_split(void** state)
     }
 }
 
+/* The weight of a texel is the mean of what lookups find in it. Four steps a side hit the kinks of
+ * the bilinear surface, between which the midpoint rule is exact. */
+static void texels_are_weighted_by_what_lookups_find_in_them(void** state)
+{
+    const uint32_t fine = 4u, n = 8u;
+    hdrp_env_image image = test_random_image(HDRP_ENV_LATLONG, n, n);
+    (void)state;
+    for (uint32_t k = 0; k < n * n; ++k) {
+        double mean = 0.0;
+        for (uint32_t i = 0; i < fine * fine; ++i) {
+            float u = ((float)(k % n) + ((float)(i % fine) + 0.5f) / (float)fine) / (float)n;
+            float v = ((float)(k / n) + ((float)(i / fine) + 0.5f) / (float)fine) / (float)n;
+            hdrp_v3 nits = hdrp_env_image_radiance(
+                &image, hdrp_env_direction_from_latlong(hdrp_v2_make(u, v)));
+            mean += (double)hdrp_luminance(nits) / (fine * fine);
+        }
+        test_near(hdrp_i_image_bilinear_mean(&image, k / n, k % n) / mean, 1.0, 1e-4);
+    }
+    free(image.texels);
+}
+
+/* An even sky is drawn evenly. On a cube of single texels, that is not so: each face has a sixth,
+ * spread over its square, and k = 1 + s^2 + t^2 = 1 / m^2 with m the direction's largest part. */
+static void even_skies_have_densities_in_closed_form(void** state)
+{
+    uint64_t random = 9u;
+    fixture cube = make_fixture(test_image(HDRP_ENV_CUBE, 1u, 1u, 3.0f));
+    fixture panorama = make_fixture(test_image(HDRP_ENV_LATLONG, 2u, 1u, 3.0f));
+    (void)state;
+    for (int i = 0; i < 1000; ++i) {
+        float u1 = (float)test_random(&random), u2 = (float)test_random(&random);
+        hdrp_env_sample s = hdrp_env_sampler_sample(&cube.sampler, u1, u2);
+        double m = fmax(fmax(fabs((double)s.direction.x), fabs((double)s.direction.y)),
+                        fabs((double)s.direction.z));
+        test_near((double)s.pdf_per_sr * m * m * m * 24.0, 1.0, 1e-5);
+        test_near((double)hdrp_env_sampler_pdf(&cube.sampler, s.direction) * m * m * m * 24.0, 1.0,
+                  1e-5);
+        s = hdrp_env_sampler_sample(&panorama.sampler, u1, u2);
+        double longitude = TEST_PI - 2.0 * TEST_PI * (double)u2, y = 1.0 - 2.0 * (double)u1;
+        test_near((double)s.pdf_per_sr * 4.0 * TEST_PI, 1.0, 1e-5);
+        test_near_v3(s.direction, sqrt(1.0 - y * y) * sin(longitude), y,
+                     sqrt(1.0 - y * y) * cos(longitude), 1e-5);
+    }
+    free_fixture(&cube);
+    free_fixture(&panorama);
+}
+
 static void numbers_outside_the_range_give_a_sample(void** state)
 {
     (void)state;
@@ -239,6 +286,8 @@ int main(void)
         cmocka_unit_test(a_sample_knows_its_density_and_radiance),
         cmocka_unit_test(the_estimate_of_the_flux_is_unbiased),
         cmocka_unit_test(building_does_not_depend_on_the_split),
+        cmocka_unit_test(texels_are_weighted_by_what_lookups_find_in_them),
+        cmocka_unit_test(even_skies_have_densities_in_closed_form),
         cmocka_unit_test(numbers_outside_the_range_give_a_sample),
         cmocka_unit_test(errors_are_reported_and_change_nothing),
     };

@@ -245,6 +245,38 @@ static void unknown_and_area_lights_are_dark(void** state)
     }
 }
 
+static void expect_v4(hdrp_v4 v, float x, float y, float z, float w)
+{
+    assert_true(v.x == x && v.y == y && v.z == z && v.w == w);
+}
+
+/* Cosine and sine of both half angles: of all directions, and of one. */
+static void lights_without_a_cone_have_the_half_angles_of_all_or_none(void** state)
+{
+    hdrp_v3 one = hdrp_v3_splat(1.0f), none = hdrp_v3_splat(0.0f);
+    (void)state;
+    expect_v4(hdrp_light_point(none, one, 10.0f).half_angle, -1.0f, 0.0f, -1.0f, 0.0f);
+    expect_v4(hdrp_light_directional(one, one, 0.0f).half_angle, 1.0f, 0.0f, 1.0f, 0.0f);
+    expect_v4(hdrp_light_box(none, one, one, one, 1.0f, 1.0f, 1.0f, 0.5f).half_angle, 1.0f, 0.0f,
+              1.0f, 0.0f);
+}
+
+static void a_light_without_a_direction_shines_down(void** state)
+{
+    hdrp_v3 none = hdrp_v3_splat(0.0f);
+    (void)state;
+    expect_v4(hdrp_light_spot(none, none, none, 1.0f, 0.1f, 0.2f).forward_radius, 0.0f, -1.0f, 0.0f,
+              0.0f);
+}
+
+static void a_hard_edge_has_a_ten_thousandth_of_a_box(void** state)
+{
+    hdrp_v3 none = hdrp_v3_splat(0.0f), one = hdrp_v3_splat(1.0f);
+    (void)state;
+    float slope = hdrp_light_box(none, one, none, one, 3.0f, 2.0f, 4.0f, 0.0f).edge_importance.x;
+    assert_true(fabsf(slope - 5000.0f) < 0.01f);
+}
+
 static void layers_link_lights_to_surfaces(void** state)
 {
     (void)state;
@@ -376,6 +408,9 @@ int main(void)
         cmocka_unit_test(bounds_by_the_half_angle_hold_all_light),
         cmocka_unit_test(a_pyramid_is_dark_beyond_its_half_angles),
         cmocka_unit_test(unknown_and_area_lights_are_dark),
+        cmocka_unit_test(lights_without_a_cone_have_the_half_angles_of_all_or_none),
+        cmocka_unit_test(a_light_without_a_direction_shines_down),
+        cmocka_unit_test(a_hard_edge_has_a_ten_thousandth_of_a_box),
         cmocka_unit_test(layers_link_lights_to_surfaces),
         cmocka_unit_test(a_place_or_range_that_is_no_number_makes_a_light_dark),
         cmocka_unit_test(each_type_has_a_function_of_its_own),

@@ -305,6 +305,20 @@ static void fibonacci_points_have_the_moments_of_disk_and_sphere(void** state)
     assert_true(hdrp_fibonacci_sphere(7u, 0u).z == -1.0f);
 }
 
+/* Point i stands for ring i of n equal ones, and for zone i of n: it lies in the middle. */
+static void fibonacci_points_lie_in_the_middle_of_their_rings(void** state)
+{
+    (void)state;
+    for (uint32_t n = 1u; n <= 3u; ++n) {
+        for (uint32_t i = 0u; i < n; ++i) {
+            hdrp_v2 p = hdrp_fibonacci_disk(i, n);
+            double middle = (i + 0.5) / n;
+            assert_true(fabs((double)hdrp_v2_dot(p, p) - middle) < 1e-6);
+            assert_true(fabs((double)hdrp_fibonacci_sphere(i, n).z - (1.0 - 2.0 * middle)) < 1e-6);
+        }
+    }
+}
+
 static void large_indices_keep_the_golden_angle(void** state)
 {
     (void)state;
@@ -476,6 +490,7 @@ int main(void)
         cmocka_unit_test(r2_steps_by_the_plastic_number_at_any_index),
         cmocka_unit_test(fibonacci_points_keep_their_distance),
         cmocka_unit_test(fibonacci_points_have_the_moments_of_disk_and_sphere),
+        cmocka_unit_test(fibonacci_points_lie_in_the_middle_of_their_rings),
         cmocka_unit_test(large_indices_keep_the_golden_angle),
         cmocka_unit_test(the_concentric_map_keeps_its_landmarks),
         cmocka_unit_test(mappings_have_the_moments_of_their_density),

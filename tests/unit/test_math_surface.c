@@ -302,6 +302,7 @@ static void texels_without_a_usable_normal_are_flat_or_limited(void** state)
     hdrp_v3 n = hdrp_normal_from_xy(-1.0f, 1.0f);
     assert_true(n.z == 0.0f && hdrp_abs(hdrp_v3_length(n) - 1.0f) < 1e-6f);
     assert_true(hdrp_normal_from_xy(0.0f, 0.0f).z == 1.0f);
+    assert_true(fabsf(hdrp_v3_length(hdrp_normal_from_xy(1.0003f, 0.0f)) - 1.0f) < 1e-6f);
     d = hdrp_derivative_from_normal(hdrp_v3_make(1e-45f, 0.0f, 0.0f), 1e6f);
     assert_true(isfinite(d.x) && isfinite(d.y));
 }

@@ -66,6 +66,14 @@ static void limits_give_the_safe_bound_for_nan(void** state)
     assert_true(hdrp_lerp(5.0f, 7.0f, 1.0f) == 7.0f);
 }
 
+static void products_go_by_component(void** state)
+{
+    (void)state;
+    hdrp_v4 p = hdrp_v4_mul(hdrp_v4_make(2.0f, 3.0f, 5.0f, 7.0f),
+                            hdrp_v4_make(11.0f, 13.0f, 17.0f, 19.0f));
+    assert_true(p.x == 22.0f && p.y == 39.0f && p.z == 85.0f && p.w == 133.0f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -74,6 +82,7 @@ int main(void)
         cmocka_unit_test(basis_is_exact_on_the_axes),
         cmocka_unit_test(select_takes_the_first_where_the_condition_is_positive),
         cmocka_unit_test(limits_give_the_safe_bound_for_nan),
+        cmocka_unit_test(products_go_by_component),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

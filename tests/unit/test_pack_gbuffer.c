@@ -369,6 +369,37 @@ static hdrp_brdf_data fitting(hdrp_u32 features)
     return hdrp_brdf_data_from_surface(s);
 }
 
+/* What is lost is what differs by more than half a code of 8 bits, 0.002, or by 1e-3 rad. */
+static void differences_below_the_resolution_are_no_losses(void** state)
+{
+    const float times[] = {0.9997f, 1.0003f};
+    (void)state;
+    for (hdrp_u32 above = 0u; above < 2u; ++above) {
+        hdrp_brdf_data d = fitting(HDRP_BRDF_FEATURE_ANISOTROPY);
+        d.fresnel0.y += times[above] * 0.002f;
+        assert_int_equal(hdrp_pack_gbuffer_losses(d), above * HDRP_PACK_GBUFFER_LOSS_COLOR);
+        d = fitting(HDRP_BRDF_FEATURE_ANISOTROPY);
+        d.diffuse_color = hdrp_v3_splat(times[above] * 0.002f);
+        d.base_color = hdrp_v3_splat(0.0f);
+        assert_int_equal(hdrp_pack_gbuffer_losses(d), above * HDRP_PACK_GBUFFER_LOSS_COLOR);
+        d = fitting(HDRP_BRDF_FEATURE_CLEAR_COAT);
+        d.coat_normal.x += times[above] * 0.001f;
+        assert_int_equal(hdrp_pack_gbuffer_losses(d), above * HDRP_PACK_GBUFFER_LOSS_COAT_NORMAL);
+        d = fitting(HDRP_BRDF_FEATURE_CLEAR_COAT);
+        d.coat_perceptual_roughness = 0.03f - times[above] * 0.002f;
+        assert_int_equal(hdrp_pack_gbuffer_losses(d),
+                         above * HDRP_PACK_GBUFFER_LOSS_COAT_ROUGHNESS);
+    }
+}
+
+static void nothing_is_in_shadow_where_no_mask_is_stored(void** state)
+{
+    (void)state;
+    hdrp_pack_gbuffer g = hdrp_pack_gbuffer_encode(fitting(0u), random_extra(0u));
+    hdrp_v4 m = hdrp_pack_gbuffer_decode_extra(g, 0u).shadow_masks;
+    assert_true(m.x == 1.0f && m.y == 1.0f && m.z == 1.0f && m.w == 1.0f);
+}
+
 static void losses_are_told(void** state)
 {
     (void)state;
@@ -479,6 +510,8 @@ int main(void)
         cmocka_unit_test(classification_reads_nothing_but_rt2),
         cmocka_unit_test(the_free_variants_decode_as_standard),
         cmocka_unit_test(exclusive_features_are_chosen_as_stated),
+        cmocka_unit_test(differences_below_the_resolution_are_no_losses),
+        cmocka_unit_test(nothing_is_in_shadow_where_no_mask_is_stored),
         cmocka_unit_test(losses_are_told),
         cmocka_unit_test(occlusion_darkens_baked_light_only_without_rt4),
         cmocka_unit_test(forward_passes_write_the_same_buffers),

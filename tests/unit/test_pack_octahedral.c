@@ -54,6 +54,30 @@ static void every_8_bit_code_is_a_fixed_point_of_every_encoder(void** state)
     }
 }
 
+/* Of all codes on the side of the normal, of which the search sees four. */
+static void the_exact_unorm_encoder_finds_the_nearest_code(void** state)
+{
+    const hdrp_u32 bits = 3u;
+    hdrp_u32 random = 1u;
+    (void)state;
+    for (int i = 0; i < 60000; ++i) {
+        float v[3], best = -2.0f;
+        for (int c = 0; c < 3; ++c) {
+            random = random * 1664525u + 1013904223u;
+            v[c] = (float)(random >> 8) * 0x1p-23f - 1.0f;
+        }
+        hdrp_v3 n = hdrp_normalize_or(hdrp_v3_make(v[0], v[1], v[2]), hdrp_v3_splat(1.0f));
+        for (hdrp_u32 code = 0u; code < (1u << (2u * bits)); ++code) {
+            hdrp_v3 d = hdrp_pack_normal_from_oct_unorm(code, bits);
+            if ((d.z < 0.0f) == (n.z < 0.0f)) {
+                best = fmaxf(best, hdrp_v3_dot(d, n));
+            }
+        }
+        hdrp_u32 found = hdrp_pack_oct_unorm_from_normal_exact(n, bits);
+        assert_true(hdrp_v3_dot(hdrp_pack_normal_from_oct_unorm(found, bits), n) >= best - 3e-7f);
+    }
+}
+
 /* Normals on and next to the equator: in the plane at every quarter of a step of 12 bits, with z
  * from 0 over denormals to two steps. */
 static void the_sign_of_z_survives_at_every_seam(void** state)
@@ -191,6 +215,7 @@ int main(void)
         cmocka_unit_test(every_snorm_12_code_is_a_fixed_point),
         cmocka_unit_test(every_unorm_12_code_is_a_fixed_point),
         cmocka_unit_test(every_8_bit_code_is_a_fixed_point_of_every_encoder),
+        cmocka_unit_test(the_exact_unorm_encoder_finds_the_nearest_code),
         cmocka_unit_test(the_sign_of_z_survives_at_every_seam),
         cmocka_unit_test(the_sign_of_z_survives_at_any_width),
         cmocka_unit_test(the_default_frame_survives_near_the_equator),
