@@ -58,7 +58,7 @@
  *  u        [0,1]  cosine between light and half vector
  *  returns  [0,1]  1 at grazing, 0 at normal incidence
  *  edges    u outside [0,1], as rounding makes it, is limited
- *  error    <= 5e-7 relative  @accuracy brdf_schlick_weight
+ *  error    <= 5.2e-7 relative  @accuracy brdf_schlick_weight
  *  source   Schlick 1994, "An Inexpensive BRDF Model for Physically-based Rendering", eq. 15 */
 HDRP_FN float hdrp_brdf_schlick_weight(float u)
 {
