@@ -297,25 +297,57 @@ static void walk(acc* a, double n_dot_v, double alpha, int paths, double albedo[
     }
 }
 
-static void bounces(acc* a)
+/* All that a surface reflects of a white environment by the formulas: from the roughness, the F0 and
+ * the albedos of the first bounce. */
+typedef double reflected_by(float perceptual_roughness, double f0, bq_fgd first);
+
+static void compare_with_walk(acc* a, reflected_by* f)
 {
     static const float roughness[] = {0.3f, 0.5f, 0.7f, 0.85f, 1.0f};
     static const float view[] = {0.1f, 0.3f, 0.5f, 0.7f, 0.9f, 1.0f};
     for (int i = 0; i < 30; ++i) {
         float p = roughness[i / 6], c = view[i % 6];
-        bq_fgd e = reference_fgd(c, p);
-        hdrp_brdf_fgd_fit fit = hdrp_brdf_fgd_fit_make(p);
+        bq_fgd first = reference_fgd(c, p);
         double albedo[WALK_F0_COUNT];
         walk(a, (double)c, alpha_of(p), 20000, albedo);
         for (int k = 0; k < WALK_F0_COUNT; ++k) {
-            hdrp_brdf_bounces b =
-                hdrp_brdf_bounces_make(fit, hdrp_v3_splat((float)walk_f0[k]), 1.0f);
-            double first = walk_f0[k] * (e.albedo - e.schlick) + e.schlick;
-            double all = first + (1.0 - e.albedo) * (double)b.reflected.y;
-            ACC_ADD(a, fabs(all - albedo[k]), "n.v %.3f, perceptual roughness %.3f, F0 %.2f",
-                    (double)c, (double)p, walk_f0[k]);
+            ACC_ADD(a, fabs(f(p, walk_f0[k], first) - albedo[k]),
+                    "n.v %.3f, perceptual roughness %.3f, F0 %.2f", (double)c, (double)p,
+                    walk_f0[k]);
         }
     }
+}
+
+static double first_bounce(double f0, bq_fgd e)
+{
+    return f0 * (e.albedo - e.schlick) + e.schlick;
+}
+
+static double with_bounces(float p, double f0, bq_fgd e)
+{
+    hdrp_brdf_bounces b =
+        hdrp_brdf_bounces_make(hdrp_brdf_fgd_fit_make(p), hdrp_v3_splat((float)f0), 1.0f);
+    return first_bounce(f0, e) + (1.0 - e.albedo) * (double)b.reflected.y;
+}
+
+static double with_compensation(float p, double f0, bq_fgd e)
+{
+    (void)p;
+    hdrp_brdf_fgd fgd;
+    fgd.albedo = (float)e.albedo;
+    fgd.schlick = (float)e.schlick;
+    hdrp_v3 factor = hdrp_brdf_energy_compensation(fgd, hdrp_v3_splat((float)f0));
+    return first_bounce(f0, e) * (double)factor.y;
+}
+
+static void bounces(acc* a)
+{
+    compare_with_walk(a, with_bounces);
+}
+
+static void energy_compensation(acc* a)
+{
+    compare_with_walk(a, with_compensation);
 }
 
 /* Integral over light cosines of 2 pi f cos, where f changes fastest at grazing. */
@@ -498,6 +530,7 @@ const acc_entry acc_brdf_albedo[] = {
     {"brdf_fgd_lookup", fgd_lookup},
     {"brdf_fgd_lookup_grazing", fgd_lookup_grazing},
     {"brdf_bounces", bounces},
+    {"brdf_energy_compensation", energy_compensation},
     {"brdf_multiscatter", multiscatter},
     {"brdf_multiscatter_grazing", multiscatter_grazing},
     {"brdf_diffuse_share_mean", diffuse_share_mean},

@@ -379,6 +379,7 @@ static void report(row* w, const result* r)
                 (unsigned long long)r->count, worst, compared ? w->input : "", average, w->unit,
                 (unsigned long long)r->non_finite, (unsigned long long)r->outside,
                 w->id ? w->id : "", bound);
+        fflush(csv); /* what is done stays, if the rest is cut short */
     }
 }
 

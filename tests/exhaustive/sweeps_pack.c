@@ -76,9 +76,19 @@ static double half_value(double code)
     return (u & 0x8000u ? -1.0 : 1.0) * small_float(u & 0x7fffu, 10);
 }
 
+/* The multiple of the format's last place nearest to x, the even one where two are. */
+static double nearest(double x, int mantissa_bits)
+{
+    int exponent;
+    frexp(x, &exponent);
+    double place = ldexp(1.0, (exponent > -13 ? exponent - 1 : -14) - mantissa_bits);
+    return rint(x / place) * place;
+}
+
 EX_VALUES(pack_half, hdrp_pack_half_from_float)
 EX_ERROR(pack_half, ex_relative(half_value(EX_Y(0)), x))
 EX_ERROR(pack_half_denormal, ex_absolute(half_value(EX_Y(0)), x))
+EX_ERROR(half_rounding, ex_absolute(half_value(EX_Y(0)), nearest(x, 10)))
 
 EX_VALUES(half_saturated, hdrp_pack_half_from_float_saturated)
 static double half_saturated_error(double x, const float* y)
@@ -101,12 +111,12 @@ static double pack_r11_error(double x, const float* y)
     return y[0] == y[EX_BLOCK] ? ex_relative(small_float((uint32_t)y[0], 6), x) : HUGE_VAL;
 }
 EX_ERROR(pack_b10, ex_relative(small_float((uint32_t)EX_Y(2), 5), x))
-/* Half a step of the denormals of blue. */
-static double small_denormal_error(double x, const float* y)
+static double small_rounding_error(double x, const float* y)
 {
-    double red = ex_absolute(small_float((uint32_t)y[0], 6), fmax(x, 0.0));
-    double blue = ex_absolute(small_float((uint32_t)y[2 * EX_BLOCK], 5), fmax(x, 0.0));
-    return fmax(2.0 * red, blue);
+    double v = fmax(x, 0.0);
+    double red = ex_absolute(small_float((uint32_t)y[0], 6), nearest(v, 6));
+    double blue = ex_absolute(small_float((uint32_t)y[2 * EX_BLOCK], 5), nearest(v, 5));
+    return fmax(red, blue);
 }
 
 static void float_uint_values(const float* x, float* y, int n, hdrp_u32 bits, hdrp_u32 number)
@@ -149,7 +159,8 @@ const ex_sweep ex_sweeps_pack[] = {
     EX_SWEEP(hdrp_pack_srgb8_from_linear, pack_srgb8_codes,
              EX_CLAIM(pack_srgb8_codes, 0.0f, 1.0f, 1u)),
     EX_SWEEP(hdrp_pack_half_from_float, pack_half, EX_CLAIM(pack_half, MIN_NORMAL, 65519.9961f, 1u),
-             EX_CLAIM(pack_half_denormal, -MIN_NORMAL, MIN_NORMAL, 1u)),
+             EX_CLAIM(pack_half_denormal, -MIN_NORMAL, MIN_NORMAL, 1u),
+             EX_STATED(half_rounding, 0.0, "absolute", -65519.9961f, 65519.9961f)),
     EX_SWEEP(hdrp_pack_half_from_float_saturated, half_saturated,
              EX_STATED(half_saturated, 0.0, "absolute", -INFINITY, INFINITY)),
     {"hdrp_pack_r11g11b10f_from_rgb",
@@ -157,7 +168,7 @@ const ex_sweep ex_sweeps_pack[] = {
      3,
      small_float_values,
      {EX_CLAIM(pack_r11, MIN_NORMAL, 65024.0f, 1u), EX_CLAIM(pack_b10, MIN_NORMAL, 64512.0f, 1u),
-      EX_STATED(small_denormal, 0.5 / (1 << 19), "absolute", -FLT_MAX, MIN_NORMAL)}},
+      EX_STATED(small_rounding, 0.0, "absolute", -FLT_MAX, 64512.0f)}},
     {"hdrp_pack_float_uint_code",
      "at 3 of 8 bits",
      1,
