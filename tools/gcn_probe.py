@@ -247,8 +247,8 @@ class Bench:
     def build_probe(self):
         compiler = need("cc")
         source = pathlib.Path(__file__).with_suffix(".c")
-        test = subprocess.run([compiler, "-E", "-x", "c", "-"], input="#include <vulkan/vulkan.h>\n",
-                              capture_output=True, text=True, check=False)
+        test = subprocess.run([compiler, "-E", "-x", "c", "-"], capture_output=True, text=True,
+                              input="#include <vulkan/vulkan.h>\n", check=False)
         if test.returncode != 0:
             raise Skip("<vulkan/vulkan.h> is not installed")
         run([compiler, *PROBE_FLAGS, source, "-o", self.program, "-lvulkan"])

@@ -123,7 +123,8 @@ class Text(unittest.TestCase):
     def test_what_is_done_otherwise_stays(self):
         self.assertEqual(self.cut(f"if (x) {{ a(); }} else if ({self.COAT} && x < y) {{ b(); }}"
                                   " else { c(); }"), "if(x){a();}else{c();}")
-        self.assertEqual(self.cut(f"a(); if ({self.COAT}) {{ b(); }} else {{ c(); }}"), "a();{c();}")
+        self.assertEqual(self.cut(f"a(); if ({self.COAT}) {{ b(); }} else {{ c(); }}"),
+                         "a();{c();}")
 
     def test_a_selection_becomes_its_other_side(self):
         self.assertEqual(self.cut(f"x = {self.COAT} ? f(a ? b : c) : g;"), "x=g;")
