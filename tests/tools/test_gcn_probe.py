@@ -62,6 +62,18 @@ class Probe(unittest.TestCase):
             found = re.findall(rf"^formula {name} +(\d+)", output, re.M)
             self.assertEqual(found, [str(instructions)] * len(gcn_probe.FAMILIES), output)
 
+    def test_no_formula_is_recorded_as_cheaper_than_nothing(self):
+        lines = [line.split(",") for line in self.recorded().read_text().splitlines()
+                 if line.startswith("formula,")]
+        self.assertGreater(len(lines), 500)
+        for column in ("instructions", "spirv_instructions", "cycles", "code_bytes"):
+            at = gcn_probe.COLUMNS.index(column)
+            self.assertEqual([line for line in lines if int(line[at]) < 0], [], column)
+
+    def test_arguments_that_are_ignored_are_no_loads(self):
+        output = self.expect(0, "hdrp_light_type", "--family", "vega10")
+        self.assertRegex(output, r"(?m)^formula hdrp_light_type +1 ")
+
     def test_a_changed_number_is_noticed(self):
         self.change(self.recorded(), r"^formula,hdrp_sqrt,vega10,1,", "formula,hdrp_sqrt,vega10,2,")
         output = self.expect(1, "--check", "hdrp_sqrt")
