@@ -21,7 +21,8 @@ layout(local_size_x = 64) in;
 # because of the barrier: it waits for all loads, so that a formula begins with its arguments in
 # registers, and what is spent on loads and stores depends on nothing but their number.
 STRIDE = 128
-FORMULA_BUFFERS = """layout(std430, binding = 0) volatile readonly buffer Values { float values[]; };
+FORMULA_BUFFERS = """
+layout(std430, binding = 0) volatile readonly buffer Values { float values[]; };
 layout(std430, binding = 1) volatile writeonly buffer Results { float results[]; };
 """
 FORMULA_MAIN = """void {name}()
@@ -98,7 +99,8 @@ def module_of(name, include, entries):
     """main calls every function, which keeps the shader compiler from leaving any out."""
     text = PRELUDE.format(include=include) + FORMULA_BUFFERS
     text += "".join(text for _, text in entries)
-    text += "void main()\n{\n" + "".join(f"    {shader.entry}();\n" for shader, _ in entries) + "}\n"
+    called = "".join(f"    {shader.entry}();\n" for shader, _ in entries)
+    text += f"void main()\n{{\n{called}}}\n"
     return Module(name, text, [shader for shader, _ in entries])
 
 
@@ -164,7 +166,8 @@ void main()
     uint at = i * {stride}u;
     hdrp_brdf_data d;
     vec3 v = vec3(values[at], values[at + 1u], values[at + 2u]);
-{load}{mask}    hdrp_brdf_fgd fgd = hdrp_brdf_fgd_fast(hdrp_v3_dot(d.normal, v), d.perceptual_roughness);
+{load}{mask}    float n_dot_v = hdrp_v3_dot(d.normal, v);
+    hdrp_brdf_fgd fgd = hdrp_brdf_fgd_fast(n_dot_v, d.perceptual_roughness);
     hdrp_brdf_lit_view w = hdrp_brdf_lit_view_make(d, v, fgd, features);
     vec3 diffuse = vec3(0.0);
     vec3 specular = vec3(0.0);
