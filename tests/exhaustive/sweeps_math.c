@@ -18,6 +18,10 @@ EX_VALUES(acos_fast, hdrp_acos_fast)
 EX_ERROR(acos_fast, ex_absolute(EX_Y(0), acos(x)))
 EX_ERROR(acos_fast_relative, ex_relative(EX_Y(0), acos(x)))
 
+EX_VALUES(acos_exact, hdrp_acos_exact)
+EX_ERROR(acos_exact, ex_ulp(EX_Y(0), acos(x)))
+EX_ERROR(acos_exact_absolute, ex_absolute(EX_Y(0), acos(x)))
+
 EX_VALUES(exp2_fast, hdrp_exp2_fast)
 EX_ERROR(exp2_fast, ex_relative(EX_Y(0), exp2(x)))
 
@@ -111,6 +115,8 @@ const ex_sweep ex_sweeps_math[] = {
     EX_SWEEP(hdrp_rsqrt_fast, rsqrt_fast, EX_CLAIM(rsqrt_fast, FLT_MIN, FLT_MAX, 3u)),
     EX_SWEEP(hdrp_acos_fast, acos_fast, EX_CLAIM(acos_fast, -1.0f, 1.0f, 3u),
              EX_CLAIM(acos_fast_relative, 0.0f, 1.0f, 3u)),
+    EX_SWEEP(hdrp_acos_exact, acos_exact, EX_CLAIM(acos_exact, -1.0f, 1.0f, 3u),
+             EX_CLAIM(acos_exact_absolute, -1.0f, 1.0f, 3u)),
     EX_SWEEP(hdrp_exp2_fast, exp2_fast, EX_CLAIM(exp2_fast, -126.0f, 127.999992f, 3u)),
     EX_SWEEP(hdrp_log2_fast, log2_fast, EX_CLAIM(log2_fast, 1e-45f, FLT_MAX, 3u)),
     {"hdrp_sincos", "", 2, sincos_values, {EX_CLAIM(sincos, -8192.0f, 8192.0f, 7u)}},
