@@ -87,6 +87,8 @@ HDRP_FN float hdrp_brdf_fresnel90(hdrp_v3 fresnel0)
  *  returns    [0,1]
  *  edges      exactly fresnel0 at u = 1 and fresnel90 at u = 0; u is limited to [0,1]
  *  error      <= 3e-7 absolute against Schlick in double  @accuracy brdf_f_schlick
+ *  error      <= 0.04 absolute against a dielectric of IOR 1.5, F0 of 0.04
+ *             @accuracy brdf_f_schlick_dielectric
  *  source     Schlick 1994, "An Inexpensive BRDF Model for Physically-based Rendering", eq. 15
  *  note       against the true dielectric Fresnel term the approximation itself is off by up to
  *             0.036 (IOR 1.5), 0.060 (1.33), 0.125 (3); see hdrp_brdf_f_dielectric_exact */

@@ -376,8 +376,10 @@ HDRP_API hdrp_v3 hdrp_env_specular(const hdrp_env* env, hdrp_v3 direction,
  *  normal   unit
  *  returns  [lux], per channel: pi times the radiance of a constant sky
  *  edges    as hdrp_env_cube_lookup
- *  error    <= 1e-2 relative to the largest irradiance, interpolation included, default size
- *           @accuracy env_irradiance_lookup */
+ *  error    <= 3e-3 relative to the largest irradiance, many lights, interpolation included,
+ *           default size  @accuracy env_irradiance_lookup
+ *  error    <= 3e-2 relative to the largest irradiance, a lone sun, which is the worst case,
+ *           likewise  @accuracy env_irradiance_lookup_sun */
 HDRP_API hdrp_v3 hdrp_env_irradiance(const hdrp_env* env, hdrp_v3 normal);
 
 #ifdef __cplusplus

@@ -234,6 +234,7 @@ HDRP_FN float hdrp_asin(float x)
  *  returns  [0,HDRP_PI]  [rad]
  *  edges    outside and NaN give NaN
  *  error    <= 1 ulp  @accuracy acos
+ *  error    <= 2.1e-7 absolute  @accuracy acos_absolute
  *  source   the built-in of the language */
 HDRP_FN float hdrp_acos(float x)
 {
@@ -246,6 +247,7 @@ HDRP_FN float hdrp_acos(float x)
  *  returns  [-HDRP_PI,HDRP_PI]  [rad]
  *  edges    signs of zeros count in C; shading languages leave (0, 0) undefined
  *  error    <= 1.6 ulp  @accuracy atan2
+ *  error    <= 2.6e-7 absolute  @accuracy atan2_absolute
  *  source   the built-in of the language */
 HDRP_FN float hdrp_atan2(float y, float x)
 {
@@ -272,6 +274,7 @@ HDRP_FN float hdrp_exp(float x)
  *  returns  [0,inf]
  *  edges    infinite from 128 on, 0 below -150; NaN gives NaN
  *  error    <= 0.6 ulp where the result is a normal float  @accuracy exp2
+ *  error    <= 7e-8 relative, likewise  @accuracy exp2_relative
  *  source   the built-in of the language */
 HDRP_FN float hdrp_exp2(float x)
 {
@@ -294,6 +297,7 @@ HDRP_FN float hdrp_log(float x)
  *  returns  [-149,inf]
  *  edges    in C 0 gives -infinity, negative and NaN give NaN; shading languages define neither
  *  error    <= 1 ulp  @accuracy log2
+ *  error    <= 1.2e-7 relative  @accuracy log2_relative
  *  source   the built-in of the language */
 HDRP_FN float hdrp_log2(float x)
 {
@@ -307,6 +311,7 @@ HDRP_FN float hdrp_log2(float x)
  *  edges    overflow gives infinity; a base of 0 and negative ones are undefined in shading
  *           languages
  *  error    <= 1 ulp where the result is a normal float  @accuracy pow
+ *  error    <= 1e-7 relative, likewise  @accuracy pow_relative
  *  source   the built-in of the language */
 HDRP_FN float hdrp_pow(float x, float y)
 {
@@ -1036,6 +1041,7 @@ HDRP_FN float hdrp_linear_from_srgb(float srgb)
  *  returns  [0,1.3e16]   monotone; exactly 0 at 0 and 1 at 1
  *  edges    negative and NaN give 0
  *  error    <= 1.1e-6 relative  @accuracy srgb_from_linear
+ *  error    <= 1.2e-7 absolute for x in [0,1]  @accuracy srgb_from_linear_absolute
  *  source   IEC 61966-2-1:1999, section 5.2
  *  note     7e-7 of the error is the moved knee, see HDRP_SRGB_LINEAR_KNEE */
 HDRP_FN float hdrp_srgb_from_linear(float x)

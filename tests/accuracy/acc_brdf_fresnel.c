@@ -193,6 +193,18 @@ static void refracted_cosine(acc* a)
     }
 }
 
+/* Against the two polarisations of Fresnel for IOR 1.5, by tangents and sines of the angles. */
+static void f_schlick_dielectric(acc* a)
+{
+    for (int i = 1; i < 20000; ++i) {
+        double t = 0.5 * 3.14159265358979323846 * i / 20000.0, r = asin(sin(t) / 1.5);
+        double reference =
+            0.5 * (pow(sin(t - r) / sin(t + r), 2.0) + pow(tan(t - r) / tan(t + r), 2.0));
+        float u = acc_float(cos(t));
+        ACC_ADD(a, absolute(hdrp_brdf_f_schlick(0.04f, 1.0f, u), reference), "u %.9g", (double)u);
+    }
+}
+
 static void fresnel0_from_schlick(acc* a)
 {
     for (int i = 0; i < COUNT; ++i) {
@@ -208,6 +220,7 @@ static void fresnel0_from_schlick(acc* a)
 const acc_entry acc_brdf_fresnel[] = {
     {"brdf_schlick_weight", schlick_weight},
     {"brdf_f_schlick", f_schlick},
+    {"brdf_f_schlick_dielectric", f_schlick_dielectric},
     {"brdf_f_dielectric_exact", f_dielectric_exact},
     {"brdf_f_dielectric_critical", f_dielectric_critical},
     {"brdf_f_conductor_exact", f_conductor_exact},

@@ -298,7 +298,7 @@ static void irradiance_error(acc* a)
 static void irradiance_lookup_error(acc* a)
 {
     for (int i = 0; i < 2; ++i) {
-        sky s = make_sky(a, i ? SKY_LAMPS : SKY_SUN, 32u, 1u, 0.0f);
+        sky s = make_sky(a, i ? SKY_LAMPS : SKY_BROAD, 32u, 1u, 0.0f);
         hdrp_v3 normal[32], e[32];
         hdrp_env_convolve_irradiance(&s.env, 0u, 96u);
         for (int k = 0; k < 32; ++k) {
@@ -348,6 +348,24 @@ static void irradiance_fast_error(acc* a)
     free_sky(&s);
 }
 
+/* The horizon of a sun is a crease that passes between texels. */
+static void irradiance_lookup_sun_error(acc* a)
+{
+    for (int i = 0; i < 3; ++i) {
+        sky s = make_sky(a, SKY_SUN, 32u, 1u, 0.0f);
+        hdrp_env_sun sun;
+        hdrp_env_find_sun(&s.image, 0.0f, &sun);
+        hdrp_env_convolve_irradiance(&s.env, 0u, 96u);
+        for (int k = 0; k < 20000; ++k) {
+            hdrp_v3 n = any_normal(a);
+            double cosine = fmax((double)hdrp_v3_dot(n, sun.direction), 0.0);
+            double e = (double)hdrp_env_irradiance(&s.env, n).y / (double)sun.illuminance_lux.y;
+            ACC_ADD(a, fabs(e - cosine), "cosine %.9g", cosine);
+        }
+        free_sky(&s);
+    }
+}
+
 static void irradiance_fast_sun_error(acc* a)
 {
     for (int i = 0; i < 4; ++i) {
@@ -375,6 +393,7 @@ const acc_entry acc_env[] = {
     {"env_prefilter_lamps", prefilter_lamps_error},
     {"env_prefilter_linear", prefilter_linear_error},
     {"env_irradiance", irradiance_error},
+    {"env_irradiance_lookup_sun", irradiance_lookup_sun_error},
     {"env_irradiance_lookup", irradiance_lookup_error},
     {"env_specular", specular_error},
     {"env_irradiance_fast", irradiance_fast_error},

@@ -81,13 +81,22 @@ static void linear_from_srgb_fast_absolute_error(acc* a)
     }
 }
 
-static void srgb_from_linear_fast_error(acc* a)
+static void srgb_from_linear_absolute(acc* a, float (*f)(float))
 {
     for (int i = 0; i < 400000; ++i) {
         float x = unit_input(a, i, 0.0031308);
-        ACC_ADD(a, fabs((double)hdrp_srgb_from_linear_fast(x) - srgb_from_linear((double)x)),
-                "x = %.9g", (double)x);
+        ACC_ADD(a, fabs((double)f(x) - srgb_from_linear((double)x)), "x = %.9g", (double)x);
     }
+}
+
+static void srgb_from_linear_fast_error(acc* a)
+{
+    srgb_from_linear_absolute(a, hdrp_srgb_from_linear_fast);
+}
+
+static void srgb_from_linear_absolute_error(acc* a)
+{
+    srgb_from_linear_absolute(a, hdrp_srgb_from_linear);
 }
 
 /* The standard rounds the weights to four digits, and with these the function is compared: the
@@ -154,6 +163,7 @@ const acc_entry acc_math_colour[] = {
     {"linear_from_srgb_fast", linear_from_srgb_fast_error},
     {"linear_from_srgb_fast_absolute", linear_from_srgb_fast_absolute_error},
     {"srgb_from_linear_fast", srgb_from_linear_fast_error},
+    {"srgb_from_linear_absolute", srgb_from_linear_absolute_error},
     {"luminance", luminance_error},
     {"rec709_from_kelvin", rec709_from_kelvin_error},
     {"rec709_from_kelvin_fast_1964", rec709_from_kelvin_fast_1964_error},

@@ -37,12 +37,27 @@ static float acos_input(acc* a, int i)
     return (float)magnitude;
 }
 
-static void acos_fast_error(acc* a)
+static void acos_absolute(acc* a, float (*f)(float))
 {
     for (int i = 0; i < 400000; ++i) {
         float x = acos_input(a, i) * (i % 3 ? 1.0f : -1.0f);
-        ACC_ADD(a, fabs((double)hdrp_acos_fast(x) - acos((double)x)), "x = %.9g", (double)x);
+        ACC_ADD(a, fabs((double)f(x) - acos((double)x)), "x = %.9g", (double)x);
     }
+}
+
+static void acos_fast_error(acc* a)
+{
+    acos_absolute(a, hdrp_acos_fast);
+}
+
+static void acos_absolute_error(acc* a)
+{
+    acos_absolute(a, hdrp_acos);
+}
+
+static void acos_exact_absolute_error(acc* a)
+{
+    acos_absolute(a, hdrp_acos_exact);
 }
 
 static void acos_fast_relative_error(acc* a)
@@ -53,14 +68,29 @@ static void acos_fast_relative_error(acc* a)
     }
 }
 
-static void atan2_fast_error(acc* a)
+static void atan2_absolute(acc* a, float (*f)(float, float))
 {
     for (int i = 0; i < 400000; ++i) {
         double angle = acc_uniform(a, -3.2, 3.2), radius = acc_log_uniform(a, 1e-36, 3e38);
         float x = acc_float(cos(angle) * radius), y = acc_float(sin(angle) * radius);
-        ACC_ADD(a, fabs((double)hdrp_atan2_fast(y, x) - atan2((double)y, (double)x)),
-                "y = %.9g, x = %.9g", (double)y, (double)x);
+        ACC_ADD(a, fabs((double)f(y, x) - atan2((double)y, (double)x)), "y = %.9g, x = %.9g",
+                (double)y, (double)x);
     }
+}
+
+static void atan2_fast_error(acc* a)
+{
+    atan2_absolute(a, hdrp_atan2_fast);
+}
+
+static void atan2_absolute_error(acc* a)
+{
+    atan2_absolute(a, hdrp_atan2);
+}
+
+static void atan2_exact_absolute_error(acc* a)
+{
+    atan2_absolute(a, hdrp_atan2_exact);
 }
 
 static void atan2_fast_relative_error(acc* a)
@@ -73,14 +103,6 @@ static void atan2_fast_relative_error(acc* a)
     }
 }
 
-static void acos_exact_absolute_error(acc* a)
-{
-    for (int i = 0; i < 400000; ++i) {
-        float x = acos_input(a, i) * (i % 3 ? 1.0f : -1.0f);
-        ACC_ADD(a, fabs((double)hdrp_acos_exact(x) - acos((double)x)), "x = %.9g", (double)x);
-    }
-}
-
 static void acos_exact_error(acc* a)
 {
     for (int i = 0; i < 400000; ++i) {
@@ -90,16 +112,6 @@ static void acos_exact_error(acc* a)
     for (uint32_t u = 0x3eff0000u; u < 0x3f010000u; u += 7u) { /* where two pieces meet */
         float x = hdrp_f32_from_bits(u);
         ACC_ADD(a, acc_ulp((double)hdrp_acos_exact(x), acos((double)x)), "x = %.9g", (double)x);
-    }
-}
-
-static void atan2_exact_absolute_error(acc* a)
-{
-    for (int i = 0; i < 400000; ++i) {
-        double angle = acc_uniform(a, -3.2, 3.2), radius = acc_log_uniform(a, 1e-36, 3e38);
-        float x = (float)(cos(angle) * radius), y = (float)(sin(angle) * radius);
-        ACC_ADD(a, fabs((double)hdrp_atan2_exact(y, x) - atan2((double)y, (double)x)),
-                "y = %.9g, x = %.9g", (double)y, (double)x);
     }
 }
 
@@ -117,28 +129,48 @@ static void atan2_exact_error(acc* a)
     }
 }
 
-static void exp2_fast_error(acc* a)
+static void exp2_relative(acc* a, float (*f)(float))
 {
     for (int i = 0; i < 800000; ++i) {
         float x = i % 2 ? acc_float(acc_uniform(a, -126.0, 127.9999))
                         : acc_float(acc_uniform(a, -1.5, 1.5));
-        ACC_ADD(a, acc_relative((double)hdrp_exp2_fast(x), exp2((double)x)), "x = %.9g", (double)x);
+        ACC_ADD(a, acc_relative((double)f(x), exp2((double)x)), "x = %.9g", (double)x);
+    }
+}
+
+static void exp2_fast_error(acc* a)
+{
+    exp2_relative(a, hdrp_exp2_fast);
+}
+
+static void exp2_relative_error(acc* a)
+{
+    exp2_relative(a, hdrp_exp2);
+}
+
+static void log2_relative(acc* a, float (*f)(float))
+{
+    for (uint32_t u = 1u; u < 0x7f800000u; u += STRIDE) {
+        float x = hdrp_f32_from_bits(u);
+        ACC_ADD(a, acc_relative((double)f(x), log2((double)x)), "x = %.9g", (double)x);
+    }
+    for (int i = 0; i < 400000; ++i) { /* around 1, where the logarithm vanishes */
+        float x = acc_float(1.0 + acc_log_uniform(a, 1e-7, 1.0) * (i % 2 ? 1.0 : -0.5));
+        ACC_ADD(a, acc_relative((double)f(x), log2((double)x)), "x = %.9g", (double)x);
     }
 }
 
 static void log2_fast_error(acc* a)
 {
-    for (uint32_t u = 1u; u < 0x7f800000u; u += STRIDE) {
-        float x = hdrp_f32_from_bits(u);
-        ACC_ADD(a, acc_relative((double)hdrp_log2_fast(x), log2((double)x)), "x = %.9g", (double)x);
-    }
-    for (int i = 0; i < 400000; ++i) { /* around 1, where the logarithm vanishes */
-        float x = acc_float(1.0 + acc_log_uniform(a, 1e-7, 1.0) * (i % 2 ? 1.0 : -0.5));
-        ACC_ADD(a, acc_relative((double)hdrp_log2_fast(x), log2((double)x)), "x = %.9g", (double)x);
-    }
+    log2_relative(a, hdrp_log2_fast);
 }
 
-static void pow_fast_error(acc* a)
+static void log2_relative_error(acc* a)
+{
+    log2_relative(a, hdrp_log2);
+}
+
+static void pow_relative(acc* a, float (*f)(float, float))
 {
     for (int i = 0; i < 400000; ++i) {
         float x = acc_float(acc_log_uniform(a, 1.5e-45, 3.4e38));
@@ -146,10 +178,20 @@ static void pow_fast_error(acc* a)
         float y = acc_float(exponent / l);
         double reference = pow((double)x, (double)y);
         if (reference > 1.2e-38 && reference < 3.4e38) {
-            ACC_ADD(a, acc_relative((double)hdrp_pow_fast(x, y), reference), "x = %.9g, y = %.9g",
-                    (double)x, (double)y);
+            ACC_ADD(a, acc_relative((double)f(x, y), reference), "x = %.9g, y = %.9g", (double)x,
+                    (double)y);
         }
     }
+}
+
+static void pow_fast_error(acc* a)
+{
+    pow_relative(a, hdrp_pow_fast);
+}
+
+static void pow_relative_error(acc* a)
+{
+    pow_relative(a, hdrp_pow);
 }
 
 static void pow_fast_colour_error(acc* a)
@@ -227,5 +269,10 @@ const acc_entry acc_math_fast[] = {
     {"sincos", sincos_error},
     {"sincos_fast_sine", sincos_fast_sine_error},
     {"sincos_fast_cosine", sincos_fast_cosine_error},
+    {"acos_absolute", acos_absolute_error},
+    {"atan2_absolute", atan2_absolute_error},
+    {"exp2_relative", exp2_relative_error},
+    {"log2_relative", log2_relative_error},
+    {"pow_relative", pow_relative_error},
     {NULL, NULL},
 };
