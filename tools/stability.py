@@ -205,7 +205,7 @@ def half_text():
     def cells(r):
         share = r["non_finite_share"]
         return [r["id"], f"`{r['function']}`", r["unit"], r["float_max"], r["half_max"],
-                r["half_mean"], f"{100.0 * float(share):.2g} %" if share else ""]
+                r["half_mean"], f"{100.0 * float(share):.3g} %" if share else ""]
     text = "### Where half stops being usable\n\n"
     text += table(["measured", "function", "usable for", "half, worst", "not finite"],
                   [[r["id"], f"`{r['function']}`", r["usable"].replace("inside ", ""),
