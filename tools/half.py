@@ -21,7 +21,8 @@ SKIPPED = 77
 # What half may add to the error of a formula and still be usable; an ulp of a half is 2^-10.
 LIMITS = {"relative": 0.02, "absolute": 1.0 / 255.0, "degrees": 0.5, "ulp": 20.0, "share": 0.02}
 # Entries whose own inputs or guards use bit patterns, while what they measure is arithmetic.
-ARITHMETIC = {"rsqrt", "atan2_fast", "atan2_fast_relative"}
+ARITHMETIC = {"rsqrt", "sqrt", "acos_exact", "atan2_fast", "atan2_fast_relative", "atan2_exact",
+              "atan2_exact_absolute"}
 # Conversions of bit patterns: floats are halves already, so that there is nothing to measure.
 BITS = {"pack_half", "pack_half_denormal", "pack_r11", "pack_b10"}
 HALF_MIN, HALF_MAX = "6.1e-05", "65504"
@@ -79,7 +80,7 @@ def usable(row, float_max, r):
         return "yes"
     if r:
         return inside(r)
-    if float(row["normal_max"]) <= float_max + limit and row["unit"] == "relative":
+    if float(row["normal_max"]) <= float_max + limit and row["unit"] in ("relative", "ulp"):
         return f"inside results {HALF_MIN} to {HALF_MAX}"
     return "no"
 
@@ -93,7 +94,8 @@ def table(half, ranges, float_max):
         line = [row["id"], row["function"], row["unit"], known or ""]
         why = reason(row)
         if why:
-            result.append(line + ["", "", "", inside(r) if r else why])
+            found = inside(r) if r else "no"
+            result.append(line + ["", "", "", why if found == "no" else found])
         else:
             some = float(row["non_finite_share"]) < 1.0
             result.append(line + [number(row["max"]) if some else "",

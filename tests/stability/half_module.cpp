@@ -1,5 +1,5 @@
-/* half_module.cpp - one module of the accuracy registry, HALF_MODULE, in half precision, or in float
- * without HALF_PRECISION.
+/* half_module.cpp - one module of the accuracy registry, HALF_MODULE, in half precision, or in
+ * float without HALF_PRECISION.
  * SPDX-License-Identifier: MIT */
 #include "half.hpp"
 

@@ -53,20 +53,27 @@ bool acc_add(acc* a, double error)
     return acc_add_every(a, error);
 }
 
+/* Whether half holds the right results as normal numbers. */
+static void note_reference(double reference)
+{
+    double size = fabs(reference);
+    is_normal = is_normal && (size == 0.0 || (size >= 0x1p-14 && size <= 65504.0));
+}
+
 double acc_relative(double measured, double reference)
 {
     if (!half_mark.outside && measured != reference) {
         absolute_max = fmax(absolute_max, fabs(measured - reference));
         largest = fmax(largest, fabs(reference));
     }
-    is_normal = is_normal &&
-                (reference == 0.0 || (fabs(reference) >= 0x1p-14 && fabs(reference) <= 65504.0));
+    note_reference(reference);
     return acc_relative_only(measured, reference);
 }
 
 /* In units in the last place of the number that is computed with. */
 double acc_ulp(double measured, double reference)
 {
+    note_reference(reference);
 #ifdef HALF_PRECISION
     int exponent;
     frexp(fmax(fabs(reference), 0x1p-14), &exponent);
