@@ -673,8 +673,7 @@ HDRP_FN float hdrp_i_brdf_lit_dv(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdrp_v3
                                            hdrp_v3_dot(d.bitangent, w.v), w.n_dot_v, w.alphas.t,
                                            w.alphas.b);
     }
-    return hdrp_brdf_d_ggx_vectors(d.normal, h, w.alphas.t) *
-           hdrp_brdf_v_smith_ggx(n_dot_l, w.n_dot_v, w.alphas.t);
+    return hdrp_brdf_dv_ggx_vectors(d.normal, h, n_dot_l, w.n_dot_v, w.alphas.t);
 }
 
 /** The coat's own lobe, cosine included. */
@@ -684,8 +683,8 @@ HDRP_FN float hdrp_i_brdf_lit_coat(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdrp_
     hdrp_v3 h = hdrp_brdf_half_vector(l, w.coat_v, d.coat_normal);
     float l_dot_h = hdrp_saturate(hdrp_v3_dot(l, h));
     return d.coat_mask * hdrp_brdf_f_schlick(HDRP_BRDF_COAT_FRESNEL0, 1.0f, l_dot_h) *
-           hdrp_brdf_d_ggx_vectors(d.coat_normal, h, w.coat_alpha) *
-           hdrp_brdf_v_smith_ggx(coat_n_dot_l, w.coat_n_dot_v, w.coat_alpha) * coat_n_dot_l;
+           hdrp_brdf_dv_ggx_vectors(d.coat_normal, h, coat_n_dot_l, w.coat_n_dot_v, w.coat_alpha) *
+           coat_n_dot_l;
 }
 
 /** Light refracted through a thin wall. */

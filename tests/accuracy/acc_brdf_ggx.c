@@ -222,6 +222,37 @@ static void v_smith_ggx(acc* a)
     }
 }
 
+static void dv_ggx(acc* a)
+{
+    for (int i = 0; i < COUNT; ++i) {
+        float alpha = random_alpha(a, i, 1.0), nl = random_cosine(a, i),
+              nv = random_cosine(a, i / 2);
+        float c = acc_float(i % 9 ? cos(random_angle(a, alpha)) : acc_uniform(a, 0.0, 1.0));
+        double cos2 = (double)c * (double)c, tan2 = (1.0 - (double)c) * (1.0 + (double)c) / cos2;
+        double w = width(alpha), reference = d_from_slopes(sqrt(tan2), 0.0, cos2, w, w) *
+                                             visibility(w, w, vec_of_cosine(nl), vec_of_cosine(nv));
+        ACC_ADD(a, relative(hdrp_brdf_dv_ggx(c, nl, nv, alpha), reference),
+                "n.h %.9g, n.l %.9g, n.v %.9g, alpha %.9g", (double)c, (double)nl, (double)nv,
+                (double)alpha);
+    }
+}
+
+static void dv_ggx_vectors(acc* a)
+{
+    for (int i = 0; i < 2 * COUNT; ++i) {
+        float alpha = random_alpha(a, i, 1.0), nl = random_cosine(a, i),
+              nv = random_cosine(a, i / 2);
+        vec dn = direction(a);
+        hdrp_v3 n = rounded(dn), h = rounded(tilted(a, dn, random_angle(a, alpha)));
+        double angle = angle_between(vec_of(n), vec_of(h)), w = width(alpha);
+        double reference =
+            d_of_angle(angle, alpha) * visibility(w, w, vec_of_cosine(nl), vec_of_cosine(nv));
+        ACC_ADD(a, relative(hdrp_brdf_dv_ggx_vectors(n, h, nl, nv, alpha), reference),
+                "angle %.9g, n.l %.9g, n.v %.9g, alpha %.9g", angle, (double)nl, (double)nv,
+                (double)alpha);
+    }
+}
+
 static void v_smith_ggx_fast(acc* a)
 {
     for (int i = 0; i < COUNT; ++i) {
@@ -377,6 +408,8 @@ const acc_entry acc_brdf_ggx[] = {
     {"brdf_d_ggx_vectors", d_ggx_vectors},
     {"brdf_d_ggx_unrounded", d_ggx_unrounded},
     {"brdf_v_smith_ggx", v_smith_ggx},
+    {"brdf_dv_ggx", dv_ggx},
+    {"brdf_dv_ggx_vectors", dv_ggx_vectors},
     {"brdf_v_smith_ggx_fast", v_smith_ggx_fast},
     {"brdf_d_ggx_aniso", d_ggx_aniso},
     {"brdf_d_ggx_aniso_vectors", d_ggx_aniso_vectors},
