@@ -772,6 +772,8 @@ HDRP_TYPEDEF(hdrp_brdf_fgd_stretch)
  *  edges    equal widths give the fit of the isotropic lobe; widths whose mean is above 1 are
  *           narrowed together
  *  error    <= 0.006 absolute, of mean_loss  @accuracy brdf_fgd_fit_aniso_mean
+ *  error    <= 0.004 absolute, of mean_schlick as the mean of hdrp_brdf_fgd_fit_towards
+ *           @accuracy brdf_fgd_fit_aniso_mean_schlick
  *  source   our own minimax fit to a quadrature, by tools/fit_brdf.py
  *  note     the means over the hemisphere are those of the stretched lobe */
 HDRP_FN hdrp_brdf_fgd_fit hdrp_brdf_fgd_fit_make_aniso(hdrp_brdf_alphas alphas)

@@ -24,6 +24,7 @@ import hdrp_api
 EXCLUSIONS = hdrp_api.ROOT / "tests/mutation/exclusions.txt"
 
 LITERAL = re.compile(r"(?<![\w.])(?:\d+\.\d*|\.\d+|\d+(?=[eE]|f\b))(?:[eE][+-]?\d+)?f?(?![\w.])")
+LITERAL_EXPONENT = re.compile(r"\d[eE][-+]$")
 SIGN = re.compile(r"(?<![-+eE])[-+](?![-+=>])|(?<=[A-Za-z_]e)[-+](?![-+=>])")
 COMPARISON = re.compile(r"(?<![<>=!-])(?:<=|>=|<|>)(?![<>=])")
 FACTOR = re.compile(r"(?<=[\w)\]] )([*/]) (?=[\w(])")
@@ -228,16 +229,11 @@ class Mutator:
         return re.sub(r"^( +)static (const \w+ \w+\[\d*\] = )", r"\1\2", text, flags=re.M)
 
 
-LITERAL_EXPONENT = re.compile(r"\d[eE][-+]$")
-
-
-def main():
-    if len(sys.argv) != 2:
-        sys.exit(__doc__.split("\n")[0])
-    folder = pathlib.Path(sys.argv[1])
+def write_mutants(folder, paths, excluded):
+    """Writes the headers and mutants.inc into folder; the mutants, number 1 first."""
     folder.mkdir(parents=True, exist_ok=True)
-    excluded, mutants = Exclusions(EXCLUSIONS.read_text()), []
-    for path in hdrp_api.headers():
+    mutants = []
+    for path in paths:
         mutator = Mutator(hdrp_api.header(path), excluded, len(mutants) + 1)
         mutator.run()
         mutants += mutator.mutants
@@ -247,9 +243,17 @@ def main():
         (folder / path.name).write_text(text)
     rows = [f'{{"{m.header}", {m.line}, "{m.kind}", "{m.key}", {m.amount!r}f}},' for m in mutants]
     (folder / "mutants.inc").write_text("\n".join(rows) + "\n")
-    kinds = [m.kind for m in mutants]
-    print(", ".join(f"{kinds.count(kind)} {kind}s" for kind in sorted(set(kinds))))
-    print("left out: " + ", ".join(f"{n} {word}s" for word, n in sorted(excluded.counts.items())))
+    return mutants
+
+
+def main():
+    if len(sys.argv) != 2:
+        sys.exit(__doc__.split("\n")[0])
+    excluded = Exclusions(EXCLUSIONS.read_text())
+    mutants = write_mutants(pathlib.Path(sys.argv[1]), hdrp_api.headers(), excluded)
+    kinds = Counter(mutant.kind for mutant in mutants)
+    print(", ".join(f"{n} {kind}s" for kind, n in sorted(kinds.items())))
+    print("left out: " + ", ".join(f"{n} {word}" for word, n in sorted(excluded.counts.items())))
     if excluded.unused():
         sys.exit(f"mutate: {EXCLUSIONS.name} names what is not there: {excluded.unused()}")
 

@@ -205,8 +205,17 @@ static void fgd_towards_schlick_below(acc* a)
     }
 }
 
-/* Cosine-weighted over a quarter turn, nodes gathered at grazing and at the narrow side. */
-static void fgd_aniso_mean(acc* a)
+static double fitted_schlick(hdrp_brdf_alphas alphas, const double v[3])
+{
+    hdrp_brdf_fgd_fit fit = hdrp_brdf_fgd_fit_towards(hdrp_brdf_fgd_fit_make_aniso(alphas),
+                                                      hdrp_brdf_fgd_stretch_make(alphas),
+                                                      (float)v[0], (float)v[1], (float)v[2]);
+    return (double)hdrp_brdf_fgd_from_fit(fit, (float)v[2]).schlick;
+}
+
+/* Cosine-weighted over a quarter turn, nodes gathered at grazing and at the narrow side: of the loss,
+ * or of Schlick's weight by the fit, since the mean is there to divide a lobe that comes from it. */
+static void fgd_aniso_means(acc* a, bool of_schlick)
 {
     enum { NODES = 20 };
     double x[NODES], w[NODES];
@@ -214,6 +223,7 @@ static void fgd_aniso_mean(acc* a)
     for (int i = 0; i < 40; ++i) {
         float p = random_roughness(a, i), k = acc_float(i % 4 ? acc_uniform(a, 0.0, 1.0) : 1.0);
         hdrp_brdf_alphas alphas = hdrp_brdf_alphas_kulla(p, k);
+        hdrp_brdf_fgd_fit fit = hdrp_brdf_fgd_fit_make_aniso(alphas);
         double at = (double)alphas.t, ab = (double)alphas.b, mean = 0.0, top = asinh(1.0 / ab);
         double gather = fmax(ab / at, 1e-3), turn = asinh(0.5 * BQ_PI / gather);
         for (int j = 0; j < NODES * NODES; ++j) {
@@ -222,11 +232,22 @@ static void fgd_aniso_mean(acc* a)
             double v[3] = {side * sin(phi), side * cos(phi), c};
             double weight = w[j / NODES] * top * ab * cosh(top * x[j / NODES]) * 2.0 * c;
             weight *= w[j % NODES] * turn * gather * cosh(turn * x[j % NODES]) / (0.5 * BQ_PI);
-            mean += weight * (1.0 - reference_stretched(v, at, ab, 32).albedo);
+            mean += weight * (of_schlick ? fitted_schlick(alphas, v)
+                                         : 1.0 - reference_stretched(v, at, ab, 32).albedo);
         }
-        ACC_ADD(a, fabs((double)hdrp_brdf_fgd_fit_make_aniso(alphas).mean_loss - mean),
+        ACC_ADD(a, fabs((double)(of_schlick ? fit.mean_schlick : fit.mean_loss) - mean),
                 "perceptual roughness %.9g, anisotropy %.9g", (double)p, (double)k);
     }
+}
+
+static void fgd_aniso_mean(acc* a)
+{
+    fgd_aniso_means(a, false);
+}
+
+static void fgd_aniso_mean_schlick(acc* a)
+{
+    fgd_aniso_means(a, true);
 }
 
 /* One step of a ray through the microsurface, whose heights are uniform in [-1,1] (Heitz et al.
@@ -526,6 +547,7 @@ const acc_entry acc_brdf_albedo[] = {
     {"brdf_fgd_fit_towards_schlick", fgd_towards_schlick},
     {"brdf_fgd_fit_towards_schlick_below", fgd_towards_schlick_below},
     {"brdf_fgd_fit_aniso_mean", fgd_aniso_mean},
+    {"brdf_fgd_fit_aniso_mean_schlick", fgd_aniso_mean_schlick},
     {"brdf_fgd_integrate", fgd_integrate},
     {"brdf_fgd_lookup", fgd_lookup},
     {"brdf_fgd_lookup_grazing", fgd_lookup_grazing},

@@ -69,8 +69,8 @@ static void limits_give_the_safe_bound_for_nan(void** state)
 static void products_go_by_component(void** state)
 {
     (void)state;
-    hdrp_v4 p = hdrp_v4_mul(hdrp_v4_make(2.0f, 3.0f, 5.0f, 7.0f),
-                            hdrp_v4_make(11.0f, 13.0f, 17.0f, 19.0f));
+    hdrp_v4 p =
+        hdrp_v4_mul(hdrp_v4_make(2.0f, 3.0f, 5.0f, 7.0f), hdrp_v4_make(11.0f, 13.0f, 17.0f, 19.0f));
     assert_true(p.x == 22.0f && p.y == 39.0f && p.z == 85.0f && p.w == 133.0f);
 }
 
