@@ -39,24 +39,26 @@ typedef struct bench_list {
 #define BENCH_DATA    extern BENCH_ALIGNED
 
 /* Sets of features of the Lit model whose cost is asked for: X(identifier, name, mask). */
+/* clang-format off */
 #define BENCH_SETS(X)                                                                              \
     X(standard, standard, 0u)                                                                      \
-    X(coat, standard + coat, HDRP_BRDF_FEATURE_CLEAR_COAT)                                         \
-    X(aniso, standard + anisotropy, HDRP_BRDF_FEATURE_ANISOTROPY)                                  \
-    X(film, standard + iridescence, HDRP_BRDF_FEATURE_IRIDESCENCE)                                 \
-    X(slab, standard + transmission, HDRP_BRDF_FEATURE_TRANSMISSION)                               \
-    X(wall, standard + refraction, HDRP_BRDF_FEATURE_REFRACTION)                                   \
-    X(coat_aniso, standard + coat + anisotropy,                                                    \
+    X(coat, standard+coat, HDRP_BRDF_FEATURE_CLEAR_COAT)                                         \
+    X(aniso, standard+anisotropy, HDRP_BRDF_FEATURE_ANISOTROPY)                                  \
+    X(film, standard+iridescence, HDRP_BRDF_FEATURE_IRIDESCENCE)                                 \
+    X(slab, standard+transmission, HDRP_BRDF_FEATURE_TRANSMISSION)                               \
+    X(wall, standard+refraction, HDRP_BRDF_FEATURE_REFRACTION)                                   \
+    X(coat_aniso, standard+coat+anisotropy,                                                    \
       HDRP_BRDF_FEATURE_CLEAR_COAT | HDRP_BRDF_FEATURE_ANISOTROPY)                                 \
-    X(coat_film, standard + coat + iridescence,                                                    \
+    X(coat_film, standard+coat+iridescence,                                                    \
       HDRP_BRDF_FEATURE_CLEAR_COAT | HDRP_BRDF_FEATURE_IRIDESCENCE)                                \
-    X(aniso_film, standard + anisotropy + iridescence,                                             \
+    X(aniso_film, standard+anisotropy+iridescence,                                             \
       HDRP_BRDF_FEATURE_ANISOTROPY | HDRP_BRDF_FEATURE_IRIDESCENCE)                                \
-    X(coat_slab, standard + coat + transmission,                                                   \
+    X(coat_slab, standard+coat+transmission,                                                   \
       HDRP_BRDF_FEATURE_CLEAR_COAT | HDRP_BRDF_FEATURE_TRANSMISSION)                               \
-    X(coat_aniso_film, standard + coat + anisotropy + iridescence,                                 \
+    X(coat_aniso_film, standard+coat+anisotropy+iridescence,                                 \
       HDRP_BRDF_FEATURE_CLEAR_COAT | HDRP_BRDF_FEATURE_ANISOTROPY | HDRP_BRDF_FEATURE_IRIDESCENCE) \
     X(all, all, HDRP_BRDF_FEATURE_ALL)
+/* clang-format on */
 #define BENCH_SET_INDEX(id, name, mask) BENCH_SET_##id,
 enum { BENCH_SETS(BENCH_SET_INDEX) BENCH_SET_COUNT };
 
