@@ -1,9 +1,10 @@
 # Front door. CMake does the work; each task has a build folder of its own under build/.
 .DEFAULT_GOAL := build
-.PHONY: build demo test check-all dist clean help
+.PHONY: build demo test check-all exhaustive bench tradeoffs mutation dist clean help
 
 JOBS ?= 2
 DEMO_ARGS ?=
+ASSETS ?= $(or $(HDRP_TEST_ASSETS),../shared/assets)
 
 configure = cmake -S . -B build/$(1) -G Ninja $(2) >build/$(1).log 2>&1 || \
             { cat build/$(1).log; exit 1; }
@@ -42,6 +43,36 @@ check-all: test ## the test suite, then sanitizers, clang, every language standa
 	@$(call ctest,clang)
 	@$(call configure,full,-DHDRP_FULL_MATRIX=ON -DHDRP_BUILD_EXAMPLES=OFF)
 	@$(call ctest,full) -L compile
+
+exhaustive: ## every float and every code through every codec and function of one float; half an hour
+	@mkdir -p build
+	@tools/install-deps test
+	@$(call configure,test,-DCMAKE_BUILD_TYPE=Release)
+	@$(call compile,test) --target exhaustive_run
+
+mutation: ## make constants and operators wrong, one by one, and count what the tests notice
+	@mkdir -p build
+	@tools/install-deps test
+	@$(call configure,test,-DCMAKE_BUILD_TYPE=Release)
+	@$(call compile,test) --target mutation
+
+bench: ## time the formulas beside other libraries; results go to bench/results
+	@mkdir -p build
+	@tools/install-deps bench
+	@$(call configure,bench,-DCMAKE_BUILD_TYPE=Release -DHDRP_BUILD_BENCH=ON -DHDRP_BUILD_TESTS=OFF)
+	@$(call compile,bench) --target bench
+
+# Pictures need scenes; without them the recorded costs of features stay.
+tradeoffs: bench ## measure error and cost of every variant again, and write docs/tradeoffs.md
+	@tools/install-deps tradeoffs
+	@$(call configure,test,-DCMAKE_BUILD_TYPE=Release)
+	@$(call compile,test) --target accuracy_record half_record stability_record published_table
+	@python3 tools/gcn_probe.py --write
+	@$(call compile,bench) --target hdrp_render
+	@! test -d "$(ASSETS)/gltf" || python3 bench/feature_cost.py \
+	    build/bench/examples/render/hdrp_render "$(ASSETS)" bench/results
+	@python3 tools/tradeoffs.py
+	@/usr/bin/python3 tools/tradeoffs_charts.py
 
 dist: ## write one-file headers to dist/
 	@tools/install-deps dist

@@ -94,7 +94,9 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         lines = list(rows(Renderer(options, pathlib.Path(folder)), options.repeat))
     path = options.folder / f"features_render_{run.machine()}.csv"
-    path.write_text("\n".join(["scene,quality,feature,on,milliseconds,error", *lines]) + "\n")
+    said = run.remark(f"pictures of {options.size}, {options.spp} samples a pixel, one thread, "
+                      f"the least of {options.repeat}")
+    path.write_text(said + "\n".join(["scene,quality,feature,on,milliseconds,error", *lines]) + "\n")
     print(f"wrote {path}")
 
 

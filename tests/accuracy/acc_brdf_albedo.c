@@ -21,15 +21,15 @@ static double relative(float measured, double reference)
 static double alpha_of(float perceptual_roughness)
 {
     double p = (double)perceptual_roughness;
-    return fmax(p * p, (double)HDRP_ALPHA_MIN);
+    return acc_larger(p * p, (double)HDRP_ALPHA_MIN);
 }
 
 /* A view: anywhere, or at the angle where shadowing is strongest. */
 static float random_view(acc* a, int i, double lowest, double alpha)
 {
     double c = i % 3 == 0   ? acc_uniform(a, lowest, 1.0)
-               : i % 3 == 1 ? acc_log_uniform(a, fmax(lowest, 1e-4), 1.0)
-                            : fmin(fmax(alpha * acc_log_uniform(a, 0.1, 10.0), lowest), 1.0);
+               : i % 3 == 1 ? acc_log_uniform(a, acc_larger(lowest, 1e-4), 1.0)
+                            : fmin(acc_larger(alpha * acc_log_uniform(a, 0.1, 10.0), lowest), 1.0);
     return acc_float(i % 31 == 0 ? 1.0 : c);
 }
 
@@ -44,13 +44,13 @@ static bq_fgd reference_fgd(float n_dot_v, float perceptual_roughness)
     if (rule.polar == 0) {
         rule = bq_make(16, 12);
     }
-    return bq_integrate_fgd(&rule, fmax((double)n_dot_v, 1e-6), alpha_of(perceptual_roughness),
-                            points);
+    return bq_integrate_fgd(&rule, acc_larger((double)n_dot_v, 1e-6),
+                            alpha_of(perceptual_roughness), points);
 }
 
 static double fgd_difference(hdrp_brdf_fgd m, bq_fgd r)
 {
-    return fmax(fabs((double)m.albedo - r.albedo), fabs((double)m.schlick - r.schlick));
+    return acc_larger(fabs((double)m.albedo - r.albedo), fabs((double)m.schlick - r.schlick));
 }
 
 static void fgd_fast(acc* a)
@@ -120,7 +120,7 @@ static bq_fgd reference_stretched(const double v[3], double at, double ab, int s
     for (int i = 0; i < side * side; ++i) {
         double phi = 2.0 * BQ_PI * (i % side + 0.5) / side, u = (i / side + 0.5) / side;
         double z = (1.0 - u) * (1.0 + s[2] / length) - s[2] / length;
-        double r = sqrt(fmax(1.0 - z * z, 0.0)), l[3];
+        double r = sqrt(acc_larger(1.0 - z * z, 0.0)), l[3];
         double h[3] = {at * (r * cos(phi) + s[0] / length), ab * (r * sin(phi) + s[1] / length),
                        z + s[2] / length};
         double c =
@@ -169,8 +169,9 @@ static stretched random_stretched(acc* a, int i, double limit)
 
 static void add_stretched(acc* a, const stretched* s, double error)
 {
-    ACC_ADD(a, fmax(error, 0.0), "v %.9g %.9g %.9g, perceptual roughness %.9g, anisotropy %.9g",
-            s->v[0], s->v[1], s->v[2], (double)s->roughness, (double)s->anisotropy);
+    ACC_ADD(a, acc_larger(error, 0.0),
+            "v %.9g %.9g %.9g, perceptual roughness %.9g, anisotropy %.9g", s->v[0], s->v[1],
+            s->v[2], (double)s->roughness, (double)s->anisotropy);
 }
 
 static void fgd_towards_above(acc* a)
@@ -225,9 +226,9 @@ static void fgd_aniso_means(acc* a, bool of_schlick)
         hdrp_brdf_alphas alphas = hdrp_brdf_alphas_kulla(p, k);
         hdrp_brdf_fgd_fit fit = hdrp_brdf_fgd_fit_make_aniso(alphas);
         double at = (double)alphas.t, ab = (double)alphas.b, mean = 0.0, top = asinh(1.0 / ab);
-        double gather = fmax(ab / at, 1e-3), turn = asinh(0.5 * BQ_PI / gather);
+        double gather = acc_larger(ab / at, 1e-3), turn = asinh(0.5 * BQ_PI / gather);
         for (int j = 0; j < NODES * NODES; ++j) {
-            double c = ab * sinh(top * x[j / NODES]), side = sqrt(fmax(1.0 - c * c, 0.0));
+            double c = ab * sinh(top * x[j / NODES]), side = sqrt(acc_larger(1.0 - c * c, 0.0));
             double phi = gather * sinh(turn * x[j % NODES]);
             double v[3] = {side * sin(phi), side * cos(phi), c};
             double weight = w[j / NODES] * top * ab * cosh(top * x[j / NODES]) * 2.0 * c;
@@ -254,7 +255,7 @@ static void fgd_aniso_mean_schlick(acc* a)
  * 2016): the height of the next hit, or 2 where the ray escapes. */
 static double next_height(double cosine, double height, double alpha, double u)
 {
-    double below = fmin(fmax(0.5 * (height + 1.0), 0.0), 1.0); /* cumulative distribution */
+    double below = fmin(acc_larger(0.5 * (height + 1.0), 0.0), 1.0); /* cumulative distribution */
     if (cosine > 0.99999) {
         return 2.0;
     }
@@ -267,7 +268,8 @@ static double next_height(double cosine, double height, double alpha, double u)
     double slope = sqrt(1.0 + alpha * alpha * (1.0 - cosine * cosine) / (cosine * cosine));
     double lambda = 0.5 * ((cosine > 0.0 ? slope : -slope) - 1.0);
     double escape = cosine > 0.0 ? pow(below, lambda) : 0.0;
-    return u > 1.0 - escape ? 2.0 : fmax(2.0 * below / pow(1.0 - u, 1.0 / lambda) - 1.0, -1.0);
+    return u > 1.0 - escape ? 2.0
+                            : acc_larger(2.0 * below / pow(1.0 - u, 1.0 / lambda) - 1.0, -1.0);
 }
 
 /* Reflects the ray w at a visible normal; returns the cosine of the incidence. */
@@ -276,10 +278,10 @@ static double bounce(acc* a, double w[3], double alpha)
     double v[3] = {-alpha * w[0], -alpha * w[1], -w[2]}, h[3], length, c = 0.0;
     length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
     double phi = acc_uniform(a, 0.0, 2.0 * BQ_PI);
-    double z = acc_uniform(a, -v[2] / length, 1.0), r = sqrt(fmax(1.0 - z * z, 0.0));
+    double z = acc_uniform(a, -v[2] / length, 1.0), r = sqrt(acc_larger(1.0 - z * z, 0.0));
     h[0] = alpha * (r * cos(phi) + v[0] / length);
     h[1] = alpha * (r * sin(phi) + v[1] / length);
-    h[2] = fmax(z + v[2] / length, 0.0);
+    h[2] = acc_larger(z + v[2] / length, 0.0);
     length = sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
     for (int k = 0; k < 3; ++k) {
         h[k] /= length;
@@ -307,7 +309,7 @@ static void walk(acc* a, double n_dot_v, double alpha, int paths, double albedo[
             if (height >= 2.0) {
                 break;
             }
-            double weight = pow(1.0 - fmin(fmax(bounce(a, w, alpha), 0.0), 1.0), 5.0);
+            double weight = pow(1.0 - fmin(acc_larger(bounce(a, w, alpha), 0.0), 1.0), 5.0);
             for (int k = 0; k < WALK_F0_COUNT; ++k) {
                 left[k] *= walk_f0[k] + (1.0 - walk_f0[k]) * weight;
             }
@@ -477,7 +479,7 @@ static void diffuse_gain(acc* a)
 {
     for (int i = 0; i < 1500; ++i) {
         float p, c, f0;
-        ACC_ADD(a, fmax(excess(a, i, &p, &c, &f0), 0.0),
+        ACC_ADD(a, acc_larger(excess(a, i, &p, &c, &f0), 0.0),
                 "n.v %.9g, perceptual roughness %.9g, F0 %.9g", (double)c, (double)p, (double)f0);
     }
 }
@@ -486,7 +488,7 @@ static void diffuse_loss(acc* a)
 {
     for (int i = 0; i < 1500; ++i) {
         float p, c, f0;
-        ACC_ADD(a, fmax(-excess(a, i, &p, &c, &f0), 0.0),
+        ACC_ADD(a, acc_larger(-excess(a, i, &p, &c, &f0), 0.0),
                 "n.v %.9g, perceptual roughness %.9g, F0 %.9g", (double)c, (double)p, (double)f0);
     }
 }

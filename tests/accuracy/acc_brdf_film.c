@@ -134,7 +134,7 @@ static void compare_with_talk(acc* a, float f0, film_function* f, double talk[2]
             hdrp_v3 m =
                 (k ? f : published_film)(in.cosine, in.outer, in.ior, in.nm, hdrp_v3_splat(in.f0));
             double error = color_difference(m, reference);
-            sum[0] = fmax(sum[0], error);
+            sum[0] = acc_larger(sum[0], error);
             sum[1] += error / count;
         }
     }
@@ -193,7 +193,7 @@ static void film_airy(acc* a)
 /* Cosine at and below which an interface to this IOR reflects totally; 0 where it never does. */
 static double critical_cosine(double outer, double ior)
 {
-    return sqrt(fmax(1.0 - ior * ior / (outer * outer), 0.0));
+    return sqrt(acc_larger(1.0 - ior * ior / (outer * outer), 0.0));
 }
 
 /* Films and bases that are thinner than the medium above, which the light did not enter from air:

@@ -74,7 +74,7 @@ static void compare_dielectric(acc* a, float c, float eta)
 
 static double critical_cosine(double eta)
 {
-    return sqrt(fmax((1.0 - eta) * (1.0 + eta), 0.0));
+    return sqrt(acc_larger((1.0 - eta) * (1.0 + eta), 0.0));
 }
 
 static void f_dielectric_exact(acc* a)
@@ -99,7 +99,7 @@ static void f_dielectric_critical(acc* a)
         float eta = acc_float(acc_uniform(a, 0.25, 1.0));
         double off = i % 8 ? (i % 2 ? -1.0 : 1.0) * acc_log_uniform(a, 1e-9, 1e-3) : 0.0;
         double c = critical_cosine((double)eta) + off;
-        compare_dielectric(a, acc_float(fmin(fmax(c, 0.0), 1.0)), eta);
+        compare_dielectric(a, acc_float(fmin(acc_larger(c, 0.0), 1.0)), eta);
     }
 }
 
@@ -188,7 +188,7 @@ static void refracted_cosine(acc* a)
         float eta = acc_float(i % 2 ? acc_log_uniform(a, 0.25, 4.0) : acc_log_uniform(a, 1.0, 4e7));
         double sine = sin(acos((double)c)) / (double)eta;
         double measured = (double)hdrp_brdf_refracted_cosine(c, eta);
-        ACC_ADD(a, fabs(measured * measured - fmax(1.0 - sine * sine, 0.0)),
+        ACC_ADD(a, fabs(measured * measured - acc_larger(1.0 - sine * sine, 0.0)),
                 "cosine %.9g, eta %.9g", (double)c, (double)eta);
     }
 }

@@ -83,7 +83,7 @@ static double d_from_slopes(double x, double y, double cos2, double at, double a
 
 static double width(float alpha)
 {
-    return fmax((double)alpha, 1e-4);
+    return acc_larger((double)alpha, 1e-4);
 }
 
 static float random_alpha(acc* a, int i, double hi)
@@ -102,7 +102,7 @@ static void alpha_from_perceptual_roughness(acc* a)
 {
     for (int i = 0; i < COUNT; ++i) {
         float p = acc_float(acc_uniform(a, 0.0, 1.0));
-        double reference = fmax(exp(2.0 * log((double)p)), (double)HDRP_ALPHA_MIN);
+        double reference = acc_larger(exp(2.0 * log((double)p)), (double)HDRP_ALPHA_MIN);
         ACC_ADD(a, relative(hdrp_brdf_alpha_from_perceptual_roughness(p), reference), "%.9g",
                 (double)p);
     }
@@ -121,8 +121,8 @@ static void half_vector(acc* a)
             continue;
         }
         vec reference = unit(sum), h = vec_of(hdrp_brdf_half_vector(l, v, v));
-        double error =
-            fmax(fmax(fabs(h.x - reference.x), fabs(h.y - reference.y)), fabs(h.z - reference.z));
+        double error = acc_larger(acc_larger(fabs(h.x - reference.x), fabs(h.y - reference.y)),
+                                  fabs(h.z - reference.z));
         ACC_ADD(a, error, "|l + v| = %.9g", sqrt(dot(sum, sum)));
     }
 }
@@ -311,7 +311,7 @@ static void d_ggx_aniso_vectors(acc* a)
     for (int i = 0; i < 12 * COUNT; ++i) {
         float at = random_alpha(a, i, 3.2);
         double ab = width(at) * acc_log_uniform(a, 0.1, 10.0);
-        compare_aniso_vectors(a, at, acc_float(fmin(fmax(ab, 1e-4), 3.2)));
+        compare_aniso_vectors(a, at, acc_float(fmin(acc_larger(ab, 1e-4), 3.2)));
     }
 }
 
@@ -364,10 +364,11 @@ static void alphas_kulla(acc* a)
     for (int i = 0; i < COUNT; ++i) {
         float p = acc_float(acc_uniform(a, 0.01, 1.0));
         float k = i < 3 ? acc_float(i - 1) : acc_float(acc_uniform(a, -1.0, 1.0));
-        double t = fmax((double)p * (double)p * (1.0 + (double)k), (double)HDRP_ALPHA_MIN);
-        double b = fmax((double)p * (double)p * (1.0 - (double)k), (double)HDRP_ALPHA_MIN);
+        double t = acc_larger((double)p * (double)p * (1.0 + (double)k), (double)HDRP_ALPHA_MIN);
+        double b = acc_larger((double)p * (double)p * (1.0 - (double)k), (double)HDRP_ALPHA_MIN);
         hdrp_brdf_alphas m = hdrp_brdf_alphas_kulla(p, k);
-        ACC_ADD(a, fmax(relative(m.t, t), relative(m.b, b)), "%.9g, %.9g", (double)p, (double)k);
+        ACC_ADD(a, acc_larger(relative(m.t, t), relative(m.b, b)), "%.9g, %.9g", (double)p,
+                (double)k);
     }
 }
 
@@ -378,11 +379,11 @@ static void alphas_disney(acc* a)
         float k = i < 3 ? acc_float(i - 1) : acc_float(acc_uniform(a, -1.0, 1.0));
         double log_aspect = 0.5 * log1p(-0.9 * fabs((double)k)), log_alpha = 2.0 * log((double)p);
         double wide = exp(log_alpha - log_aspect);
-        double narrow = fmax(exp(log_alpha + log_aspect), (double)HDRP_ALPHA_MIN);
+        double narrow = acc_larger(exp(log_alpha + log_aspect), (double)HDRP_ALPHA_MIN);
         hdrp_brdf_alphas m = hdrp_brdf_alphas_disney(p, k);
         double mw = (double)(k < 0.0f ? m.b : m.t), mn = (double)(k < 0.0f ? m.t : m.b);
-        ACC_ADD(a, fmax(acc_relative(mw, wide), acc_relative(mn, narrow)), "%.9g, %.9g", (double)p,
-                (double)k);
+        ACC_ADD(a, acc_larger(acc_relative(mw, wide), acc_relative(mn, narrow)), "%.9g, %.9g",
+                (double)p, (double)k);
     }
 }
 
@@ -395,7 +396,7 @@ static void kulla_from_alphas(acc* a)
         hdrp_brdf_kulla k = hdrp_brdf_kulla_from_alphas(w);
         double mean = (double)k.perceptual_roughness * (double)k.perceptual_roughness;
         double t = mean * (1.0 + (double)k.anisotropy), b = mean * (1.0 - (double)k.anisotropy);
-        ACC_ADD(a, fmax(fabs(t - (double)w.t), fabs(b - (double)w.b)) / mean, "%.9g, %.9g",
+        ACC_ADD(a, acc_larger(fabs(t - (double)w.t), fabs(b - (double)w.b)) / mean, "%.9g, %.9g",
                 (double)w.t, (double)w.b);
     }
 }

@@ -76,7 +76,7 @@ static void refract(acc* a)
         widen(hdrp_brdf_refract(fv, fn, eta).direction, m);
         for (int k = 0; k < 3; ++k) {
             double r = -n[k] * cos(beyond) - side[k] * sin(beyond);
-            error = fmax(error, fabs(m[k] - r));
+            error = acc_larger(error, fabs(m[k] - r));
         }
         ACC_ADD(a, error, "angle %.9g, eta %.9g", angle, (double)eta);
     }

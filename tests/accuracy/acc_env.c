@@ -87,7 +87,7 @@ static void fill_sky(acc* a, const hdrp_env_image* image, sky_kind kind)
         double v[3] = {(double)d.x, (double)d.y, (double)d.z}, c[3] = {0.02, 0.02, 0.02};
         for (int i = 0; i < 6; ++i) {
             double cosine = v[0] * axis[i][0] + v[1] * axis[i][1] + v[2] * axis[i][2];
-            double lobe = pow(fmax(cosine, 0.0), power[i]);
+            double lobe = pow(acc_larger(cosine, 0.0), power[i]);
             c[i % 3] += lobe;
             c[(i + 1) % 3] += 0.5 * lobe;
         }
@@ -144,9 +144,10 @@ static void free_sky(sky* s)
 /* Largest error of the channels, against the largest channel. */
 static double worst_channel(hdrp_v3 v, const double reference[3])
 {
-    double error = fmax(fabs((double)v.x - reference[0]),
-                        fmax(fabs((double)v.y - reference[1]), fabs((double)v.z - reference[2])));
-    return error / fmax(reference[0], fmax(reference[1], reference[2]));
+    double error =
+        acc_larger(fabs((double)v.x - reference[0]),
+                   acc_larger(fabs((double)v.y - reference[1]), fabs((double)v.z - reference[2])));
+    return error / acc_larger(reference[0], acc_larger(reference[1], reference[2]));
 }
 
 static hdrp_v3 any_normal(acc* a)
@@ -264,11 +265,11 @@ static void add_irradiance_errors(acc* a, const sky* s, const hdrp_v3* normal, c
     for (int k = 0; k < count; ++k) {
         double reference[3];
         env_brute_force(&s->image, normal[k], 1.0, reference);
-        error[k] = fmax(fabs((double)e[k].x - PI * reference[0]),
-                        fmax(fabs((double)e[k].y - PI * reference[1]),
-                             fabs((double)e[k].z - PI * reference[2])));
+        error[k] = acc_larger(fabs((double)e[k].x - PI * reference[0]),
+                              acc_larger(fabs((double)e[k].y - PI * reference[1]),
+                                         fabs((double)e[k].z - PI * reference[2])));
         for (int c = 0; c < 3; ++c) {
-            largest = fmax(largest, PI * reference[c]);
+            largest = acc_larger(largest, PI * reference[c]);
         }
     }
     for (int k = 0; k < count; ++k) {
@@ -358,7 +359,7 @@ static void irradiance_lookup_sun_error(acc* a)
         hdrp_env_convolve_irradiance(&s.env, 0u, 96u);
         for (int k = 0; k < 20000; ++k) {
             hdrp_v3 n = any_normal(a);
-            double cosine = fmax((double)hdrp_v3_dot(n, sun.direction), 0.0);
+            double cosine = acc_larger((double)hdrp_v3_dot(n, sun.direction), 0.0);
             double e = (double)hdrp_env_irradiance(&s.env, n).y / (double)sun.illuminance_lux.y;
             ACC_ADD(a, fabs(e - cosine), "cosine %.9g", cosine);
         }
@@ -376,7 +377,7 @@ static void irradiance_fast_sun_error(acc* a)
         hdrp_env_project_sh(&s.env, &sh);
         for (int k = 0; k < 2000; ++k) {
             hdrp_v3 n = any_normal(a);
-            double cosine = fmax((double)hdrp_v3_dot(n, sun.direction), 0.0);
+            double cosine = acc_larger((double)hdrp_v3_dot(n, sun.direction), 0.0);
             double e = (double)hdrp_env_irradiance_fast(sh, n).y / (double)sun.illuminance_lux.y;
             ACC_ADD(a, fabs(e - cosine), "cosine %.9g", cosine);
         }

@@ -11,7 +11,7 @@
 
 static double max3(double a, double b, double c)
 {
-    return fmax(a, fmax(b, c));
+    return acc_larger(a, acc_larger(b, c));
 }
 
 /* A float direction: uniform, on an axis, or close to one. */
@@ -55,7 +55,8 @@ static void latlong_uv_error(acc* a)
         double u = 0.5 - copysign(longitude, x) / (2.0 * PI);
         double du = fabs((double)uv.x - u);
         du = fmin(du, fabs(1.0 - du)) * sin(polar);
-        ACC_ADD(a, fmax(du, fabs((double)uv.y - polar / PI)), "d = (%.9g, %.9g, %.9g)", x, y, z);
+        ACC_ADD(a, acc_larger(du, fabs((double)uv.y - polar / PI)), "d = (%.9g, %.9g, %.9g)", x, y,
+                z);
     }
 }
 
@@ -146,7 +147,7 @@ static void openexr_place_error(acc* a)
         double outward = dot(face_axes[ours.face][2], d);
         double u = 0.5 + 0.5 * dot(openexr_axes[ours.face][0], d) / outward;
         double v = 0.5 + 0.5 * dot(openexr_axes[ours.face][1], d) / outward;
-        ACC_ADD(a, fmax(fabs((double)theirs.u - u), fabs((double)theirs.v - v)),
+        ACC_ADD(a, acc_larger(fabs((double)theirs.u - u), fabs((double)theirs.v - v)),
                 "d = (%.9g, %.9g, %.9g)", d[0], d[1], d[2]);
     }
 }
@@ -329,8 +330,9 @@ static void measure_error(acc* a)
             }
         }
         for (int c = 0; c < 3; ++c) {
-            double error = fmax(acc_relative(stats.illuminance_lux_rgb[c], lux[c]),
-                                acc_relative(stats.average_nits_rgb[c], flux[c] / (4.0 * PI)));
+            double error =
+                acc_larger(acc_relative(stats.illuminance_lux_rgb[c], lux[c]),
+                           acc_relative(stats.average_nits_rgb[c], flux[c] / (4.0 * PI)));
             ACC_ADD(a, error, "%s %u x %u channel %d", cube ? "cube" : "lat-long", w, h, c);
         }
     }

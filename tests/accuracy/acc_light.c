@@ -534,7 +534,7 @@ static void falloff_errors(acc* a, float (*f)(float, float), double power)
         float inv = hdrp_light_inv_range_sq(log_float(a, 1e-3, 1e9));
         float d2 = squared_distance(a, i, inv);
         double nearest = (double)HDRP_LIGHT_DISTANCE_MIN_M;
-        double limited = fmax((double)d2, nearest * nearest);
+        double limited = acc_larger((double)d2, nearest * nearest);
         double reference = window_reference((double)d2, (double)inv, power) / limited;
         ACC_ADD(a, fabs((double)f(d2, inv) - reference) * limited, "d^2 %.9g, 1/r^2 %.9g",
                 (double)d2, (double)inv);
@@ -626,9 +626,9 @@ static void versine_error(acc* a)
 /* Inner and outer half angles whose edge is at least a tenth of the cone. */
 static void soft_cone(acc* a, double smallest, float* inner, float* outer)
 {
-    *outer = acc_float(fmax(smallest, acc_uniform(a, 0.0, 1.0) < 0.5
-                                          ? acc_uniform(a, smallest, PI)
-                                          : acc_log_uniform(a, smallest, PI)));
+    *outer = acc_float(acc_larger(smallest, acc_uniform(a, 0.0, 1.0) < 0.5
+                                                ? acc_uniform(a, smallest, PI)
+                                                : acc_log_uniform(a, smallest, PI)));
     double versine = 2.0 * pow(sin(0.5 * (double)*outer), 2.0);
     double inner_versine = acc_uniform(a, 0.0, 0.9) * versine;
     *inner = acc_float(2.0 * asin(sqrt(0.5 * inner_versine)));
@@ -651,7 +651,7 @@ static void cone_shape_error(acc* a)
 static double cone_reference(double theta, double inner, double outer)
 {
     double t = (cos(theta) - cos(outer)) / (cos(inner) - cos(outer));
-    t = fmin(fmax(t, 0.0), 1.0);
+    t = fmin(acc_larger(t, 0.0), 1.0);
     return t * t;
 }
 
@@ -728,8 +728,8 @@ static void pyramid_shape_error(acc* a)
         float x = angle(a, i + 1, 1e-5, HDRP_HALF_PI);
         hdrp_light_pyramid_shape p = hdrp_light_pyramid_shape_make(x, x, 1.0f);
         ACC_ADD(a,
-                fmax(acc_relative((double)p.sin_x, sin((double)x)),
-                     acc_relative((double)p.cos_y, cos((double)x))),
+                acc_larger(acc_relative((double)p.sin_x, sin((double)x)),
+                           acc_relative((double)p.cos_y, cos((double)x))),
                 "%.9g rad", (double)x);
     }
 }
@@ -743,7 +743,7 @@ static double face_reference(double along, double z, double half_angle, double e
     vec begin = {sin(half_angle * (1.0 - edge)), 0.0, cos(half_angle * (1.0 - edge))};
     vec d = {fabs(along), 0.0, z};
     vec inwards = cross(top, bottom);
-    return fmin(fmax(dot(inwards, d) / dot(inwards, begin), 0.0), 1.0);
+    return fmin(acc_larger(dot(inwards, d) / dot(inwards, begin), 0.0), 1.0);
 }
 
 static double pyramid_reference(vec d, double half_x, double half_y, double edge)
@@ -777,8 +777,8 @@ static double box_reference(vec p, double half_width, double half_height, double
 {
     double x = fmin(half_width - p.x, half_width + p.x) / edge;
     double y = fmin(half_height - p.y, half_height + p.y) / edge;
-    double t = fmin(fmax(x, 0.0), 1.0) * fmin(fmax(y, 0.0), 1.0);
-    t *= fmin(fmax((depth - p.z) / edge, 0.0), 1.0);
+    double t = fmin(acc_larger(x, 0.0), 1.0) * fmin(acc_larger(y, 0.0), 1.0);
+    t *= fmin(acc_larger((depth - p.z) / edge, 0.0), 1.0);
     return p.z < 0.0 ? 0.0 : t * t;
 }
 
@@ -836,7 +836,7 @@ static double share_error(const scene* s, hdrp_light_incident i, double attenuat
 {
     vec d = to_surface(s);
     double distance_sq = dot(d, d), range = (double)s->range;
-    double limited = fmax(distance_sq, pow((double)HDRP_LIGHT_DISTANCE_MIN_M, 2.0));
+    double limited = acc_larger(distance_sq, pow((double)HDRP_LIGHT_DISTANCE_MIN_M, 2.0));
     double window = window_reference(distance_sq, 1.0 / (range * range), 2.0);
     return fabs((double)i.illuminance.y * limited / (double)s->candela - window * attenuation);
 }
@@ -861,7 +861,7 @@ static void eval_direction_error(acc* a)
         vec zero = {0.0, 0.0, 0.0};
         vec l = mad(zero, unit(to_surface(&s)), -1.0);
         vec d = mad(vec_from(hdrp_light_eval(light, s.surface).l), l, -1.0);
-        ACC_ADD(a, fmax(fabs(d.x), fmax(fabs(d.y), fabs(d.z))), "%.9g m", s.distance);
+        ACC_ADD(a, acc_larger(fabs(d.x), acc_larger(fabs(d.y), fabs(d.z))), "%.9g m", s.distance);
     }
 }
 

@@ -6,7 +6,7 @@
 
 static double max3(double a, double b, double c)
 {
-    return fmax(a, fmax(b, c));
+    return acc_larger(a, acc_larger(b, c));
 }
 
 static void normalize_or_error(acc* a)
@@ -60,9 +60,9 @@ static void basis_error(acc* a)
         hdrp_basis f = hdrp_basis_from_normal(n);
         double right = max3(fabs(dot(f.tangent, n)), fabs(dot(f.bitangent, n)),
                             fabs(dot(f.tangent, f.bitangent)));
-        double length = fmax(fabs(sqrt(dot(f.tangent, f.tangent)) - 1.0),
-                             fabs(sqrt(dot(f.bitangent, f.bitangent)) - 1.0));
-        ACC_ADD(a, fmax(right, length), "n = (%.9g, %.9g, %.9g)", (double)n.x, (double)n.y,
+        double length = acc_larger(fabs(sqrt(dot(f.tangent, f.tangent)) - 1.0),
+                                   fabs(sqrt(dot(f.bitangent, f.bitangent)) - 1.0));
+        ACC_ADD(a, acc_larger(right, length), "n = (%.9g, %.9g, %.9g)", (double)n.x, (double)n.y,
                 (double)n.z);
     }
 }

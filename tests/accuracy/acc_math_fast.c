@@ -228,9 +228,10 @@ static void sincos_error(acc* a)
     for (int i = 0; i < 500000; ++i) {
         float x = angle(a, i);
         hdrp_sincos_result r = hdrp_sincos(x);
-        ACC_ADD(
-            a, fmax(fabs((double)r.sine - sin((double)x)), fabs((double)r.cosine - cos((double)x))),
-            "x = %.9g", (double)x);
+        ACC_ADD(a,
+                acc_larger(fabs((double)r.sine - sin((double)x)),
+                           fabs((double)r.cosine - cos((double)x))),
+                "x = %.9g", (double)x);
     }
 }
 

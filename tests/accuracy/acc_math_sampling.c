@@ -29,9 +29,10 @@ static void hammersley_error(acc* a)
         for (int k = 0; k < 32; ++k) {
             inverse += (double)(index >> k & 1u) * ldexp(0.5, -k);
         }
-        ACC_ADD(
-            a, fmax(fabs((double)p.x - (double)index / (double)count), fabs((double)p.y - inverse)),
-            "%u of %u", index, count);
+        ACC_ADD(a,
+                acc_larger(fabs((double)p.x - (double)index / (double)count),
+                           fabs((double)p.y - inverse)),
+                "%u of %u", index, count);
     }
 }
 
@@ -45,8 +46,8 @@ static void r2_error(acc* a)
         uint32_t index = random_index(a, i);
         hdrp_v2 r = hdrp_r2(index);
         ACC_ADD(a,
-                fmax(around((double)r.x, 0.5L + (long double)index / p),
-                     around((double)r.y, 0.5L + (long double)index / (p * p))),
+                acc_larger(around((double)r.x, 0.5L + (long double)index / p),
+                           around((double)r.y, 0.5L + (long double)index / (p * p))),
                 "%u", index);
     }
 }
@@ -69,15 +70,16 @@ static void fibonacci_disk_error(acc* a)
         uint32_t index = random_index(a, i), count = random_count(a, index);
         double angle = golden_angle(index), r = sqrt(((double)index + 0.5) / (double)count);
         hdrp_v2 p = hdrp_fibonacci_disk(index, count);
-        ACC_ADD(a, fmax(fabs((double)p.x - r * cos(angle)), fabs((double)p.y - r * sin(angle))),
+        ACC_ADD(a,
+                acc_larger(fabs((double)p.x - r * cos(angle)), fabs((double)p.y - r * sin(angle))),
                 "%u of %u", index, count);
     }
 }
 
 static double difference3(hdrp_v3 measured, double x, double y, double z)
 {
-    return fmax(fabs((double)measured.x - x),
-                fmax(fabs((double)measured.y - y), fabs((double)measured.z - z)));
+    return acc_larger(fabs((double)measured.x - x),
+                      acc_larger(fabs((double)measured.y - y), fabs((double)measured.z - z)));
 }
 
 static void fibonacci_sphere_error(acc* a)
@@ -124,8 +126,8 @@ static void disk_concentric_error(acc* a)
         double x, y;
         hdrp_v2 u = square_point(a, i), p = hdrp_disk_concentric(u);
         concentric(u, &x, &y);
-        ACC_ADD(a, fmax(fabs((double)p.x - x), fabs((double)p.y - y)), "(%.9g, %.9g)", (double)u.x,
-                (double)u.y);
+        ACC_ADD(a, acc_larger(fabs((double)p.x - x), fabs((double)p.y - y)), "(%.9g, %.9g)",
+                (double)u.x, (double)u.y);
     }
 }
 
@@ -134,7 +136,7 @@ static void disk_polar_error(acc* a)
     for (int i = 0; i < 300000; ++i) {
         hdrp_v2 u = square_point(a, i), p = hdrp_disk_polar(u);
         double r = sqrt((double)u.x), phi = 2.0 * PI * (double)u.y;
-        ACC_ADD(a, fmax(fabs((double)p.x - r * cos(phi)), fabs((double)p.y - r * sin(phi))),
+        ACC_ADD(a, acc_larger(fabs((double)p.x - r * cos(phi)), fabs((double)p.y - r * sin(phi))),
                 "(%.9g, %.9g)", (double)u.x, (double)u.y);
     }
 }

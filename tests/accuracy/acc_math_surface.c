@@ -66,7 +66,7 @@ static double distance(hdrp_v3 measured, vec reference)
 static double largest_difference(hdrp_v3 measured, vec reference)
 {
     vec d = mad(vec_of(measured), reference, -1.0);
-    return fmax(fabs(d.v[0]), fmax(fabs(d.v[1]), fabs(d.v[2])));
+    return acc_larger(fabs(d.v[0]), acc_larger(fabs(d.v[1]), fabs(d.v[2])));
 }
 
 static double degrees_between(hdrp_v3 measured, vec reference)
@@ -102,8 +102,8 @@ static void surface_frame_error(acc* a)
         vec unit = normalized(vec_of(n)), tangent = scaled(vec_of(t), 1.0 / length(vec_of(n)));
         vec bitangent = scaled(cross(unit, vec_of(t)), side);
         double error = distance(f.normal, unit);
-        error = fmax(error, distance(f.tangent, tangent) / length(tangent));
-        error = fmax(error, distance(f.bitangent, bitangent) / length(vec_of(t)));
+        error = acc_larger(error, distance(f.tangent, tangent) / length(tangent));
+        error = acc_larger(error, distance(f.bitangent, bitangent) / length(vec_of(t)));
         ACC_ADD(a, error, "n = (%.9g, %.9g, %.9g)", (double)n.x, (double)n.y, (double)n.z);
     }
 }
@@ -160,10 +160,10 @@ static void basis_from_uv_error(acc* a)
         hdrp_surface_footprint f = hdrp_surface_footprint_from_position(m.normal, m.dp_dx, m.dp_dy);
         hdrp_basis basis = hdrp_basis_from_uv(f, m.duv_dx, m.duv_dy);
         vec bitangent = mad(m.pv, m.pu, -dot(m.pu, m.pv) / dot(m.pu, m.pu));
-        ACC_ADD(
-            a,
-            fmax(degrees_between(basis.tangent, m.pu), degrees_between(basis.bitangent, bitangent)),
-            "duv_dx = (%.9g, %.9g)", (double)m.duv_dx.x, (double)m.duv_dx.y);
+        ACC_ADD(a,
+                acc_larger(degrees_between(basis.tangent, m.pu),
+                           degrees_between(basis.bitangent, bitangent)),
+                "duv_dx = (%.9g, %.9g)", (double)m.duv_dx.x, (double)m.duv_dx.y);
     }
 }
 
@@ -194,7 +194,7 @@ static void normal_from_xy_errors(acc* a, double smallest_z)
         double radius = sqrt(1.0 - z * z);
         float x = acc_float(radius * cos(turn)), y = acc_float(radius * sin(turn));
         double d = (double)x * (double)x + (double)y * (double)y;
-        vec reference = vec_make((double)x, (double)y, sqrt(fmax(1.0 - d, 0.0)));
+        vec reference = vec_make((double)x, (double)y, sqrt(acc_larger(1.0 - d, 0.0)));
         ACC_ADD(a, degrees_between(hdrp_normal_from_xy(x, y), reference), "(%.9g, %.9g)", (double)x,
                 (double)y);
     }
@@ -244,7 +244,7 @@ static void derivative_from_heights_error(acc* a)
         float s = acc_float(acc_log_uniform(a, 1e-9, 1e9));
         hdrp_v2 d = hdrp_derivative_from_heights(left, right, right, left, hdrp_v2_make(s, s));
         double slope = ((double)right - (double)left) / (2.0 * (double)s);
-        ACC_ADD(a, fmax(acc_relative((double)d.x, slope), acc_relative((double)d.y, -slope)),
+        ACC_ADD(a, acc_larger(acc_relative((double)d.x, slope), acc_relative((double)d.y, -slope)),
                 "%.9g, %.9g, spacing %.9g", (double)left, (double)right, (double)s);
     }
 }
@@ -300,7 +300,7 @@ static void triplanar_weights_error(acc* a)
         float sharpness = acc_float(acc_log_uniform(a, 1.0, 64.0));
         hdrp_v3 v = rounded(scaled(n, acc_log_uniform(a, 1e-20, 1e20)));
         double l[3] = {log(fabs((double)v.x)), log(fabs((double)v.y)), log(fabs((double)v.z))};
-        double top = fmax(l[0], fmax(l[1], l[2])), s = (double)sharpness;
+        double top = acc_larger(l[0], acc_larger(l[1], l[2])), s = (double)sharpness;
         vec w = vec_make(exp(s * (l[0] - top)), exp(s * (l[1] - top)), exp(s * (l[2] - top)));
         double sum = w.v[0] + w.v[1] + w.v[2];
         ACC_ADD(a, largest_difference(hdrp_triplanar_weights(v, sharpness), scaled(w, 1.0 / sum)),
@@ -326,7 +326,7 @@ static void surface_gradient_triplanar_error(acc* a)
             double s = (double)d[k].x, r = (double)d[k].y, weight = vec_of(w).v[k];
             slope[0] += weight * (s * t.v[look_up[k][0]] + r * t.v[look_up[k][1]]);
             slope[1] += weight * (s * b.v[look_up[k][0]] + r * b.v[look_up[k][1]]);
-            largest = fmax(largest, hypot(s, r));
+            largest = acc_larger(largest, hypot(s, r));
         }
         vec reference = mad(scaled(t, slope[0]), b, slope[1]);
         hdrp_v3 g = hdrp_surface_gradient_from_triplanar(normal, w, d[0], d[1], d[2]);

@@ -16,7 +16,7 @@ static void around(acc* a, double value, void (*test)(acc*, float, hdrp_u32), hd
 static void unorm_at(acc* a, float x, hdrp_u32 bits)
 {
     double last = ldexp(1.0, (int)bits) - 1.0; /* 24 + 16 bits: the product is exact */
-    double exact = fmin(fmax((double)x, 0.0), 1.0) * last;
+    double exact = fmin(acc_larger((double)x, 0.0), 1.0) * last;
     ACC_ADD(a, fabs((double)hdrp_pack_unorm_from_float(x, bits) - exact), "x %.9g, %u bits",
             (double)x, bits);
 }
@@ -39,7 +39,7 @@ static void unorm_codes_error(acc* a)
 static void snorm_at(acc* a, float x, hdrp_u32 bits)
 {
     double last = ldexp(1.0, (int)bits - 1) - 1.0;
-    double exact = fmin(fmax((double)x, -1.0), 1.0) * last;
+    double exact = fmin(acc_larger((double)x, -1.0), 1.0) * last;
     double code = (double)hdrp_pack_snorm_from_float(x, bits);
     code -= code > last ? ldexp(1.0, (int)bits) : 0.0;
     ACC_ADD(a, fabs(code - exact), "x %.9g, %u bits", (double)x, bits);
@@ -74,10 +74,10 @@ static void float_from_snorm_error(acc* a)
             double last = ldexp(1.0, (int)bits - 1) - 1.0;
             double value = (double)code;
             value -= value > last ? ldexp(1.0, (int)bits) : 0.0;
-            ACC_ADD(
-                a,
-                acc_ulp((double)hdrp_pack_float_from_snorm(code, bits), fmax(value / last, -1.0)),
-                "code %u of %u bits", code, bits);
+            ACC_ADD(a,
+                    acc_ulp((double)hdrp_pack_float_from_snorm(code, bits),
+                            acc_larger(value / last, -1.0)),
+                    "code %u of %u bits", code, bits);
         }
     }
 }
@@ -86,7 +86,7 @@ static void biased_snorm_at(acc* a, float x, hdrp_u32 bits)
 {
     float target = hdrp_pack_biased_snorm_target(x, bits);
     double decoded = (double)hdrp_pack_float_from_biased_snorm_target(target, bits);
-    ACC_ADD(a, fabs(decoded - fmin(fmax((double)x, -1.0), 1.0)), "x %.9g", (double)x);
+    ACC_ADD(a, fabs(decoded - fmin(acc_larger((double)x, -1.0), 1.0)), "x %.9g", (double)x);
 }
 
 static void biased_snorm_8_error(acc* a)
@@ -117,7 +117,7 @@ static double rational_power(double x, int p, int q)
 static void srgb8_at(acc* a, float x, hdrp_u32 unused)
 {
     (void)unused;
-    double v = fmin(fmax((double)x, 0.0), 1.0);
+    double v = fmin(acc_larger((double)x, 0.0), 1.0);
     double encoded = v <= 0.0031308 ? 12.92 * v : 1.055 * rational_power(v, 5, 12) - 0.055;
     ACC_ADD(a, fabs((double)hdrp_pack_srgb8_from_linear(x) - encoded * 255.0), "x %.9g", (double)x);
 }
@@ -345,9 +345,9 @@ static void oct_decoded(acc* a, hdrp_v3 measured, double x, double y, hdrp_u32 c
         n[1] = copysign(1.0 - fabs(x), y);
     }
     double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    double e = fmax(
-        fabs((double)measured.x - n[0] / length),
-        fmax(fabs((double)measured.y - n[1] / length), fabs((double)measured.z - n[2] / length)));
+    double e = acc_larger(fabs((double)measured.x - n[0] / length),
+                          acc_larger(fabs((double)measured.y - n[1] / length),
+                                     fabs((double)measured.z - n[2] / length)));
     ACC_ADD(a, e, "code %u of %u bits", code, bits);
 }
 
@@ -358,8 +358,8 @@ static void normal_from_oct_snorm_error(acc* a)
         hdrp_u32 code = (hdrp_u32)(acc_random_bits(a) >> (64u - 2u * bits));
         double last = ldexp(1.0, (int)bits - 1) - 1.0, all = ldexp(1.0, (int)bits);
         double x = (double)(code & ((1u << bits) - 1u)), y = (double)(code >> bits);
-        x = fmax((x > last ? x - all : x) / last, -1.0);
-        y = fmax((y > last ? y - all : y) / last, -1.0);
+        x = acc_larger((x > last ? x - all : x) / last, -1.0);
+        y = acc_larger((y > last ? y - all : y) / last, -1.0);
         oct_decoded(a, hdrp_pack_normal_from_oct_snorm(code, bits), x, y, code, bits);
     }
 }
@@ -436,9 +436,10 @@ static double turned_tangent_error(hdrp_v3 measured, hdrp_v3 n, double angle)
     double m[3] = {(double)n.x, (double)n.y, (double)n.z};
     double t0[3] = {(double)t.x, (double)t.y, (double)t.z}, side[3];
     cross(m, t0, side);
-    return fmax(fabs((double)measured.x - (t0[0] * cos(angle) + side[0] * sin(angle))),
-                fmax(fabs((double)measured.y - (t0[1] * cos(angle) + side[1] * sin(angle))),
-                     fabs((double)measured.z - (t0[2] * cos(angle) + side[2] * sin(angle)))));
+    return acc_larger(
+        fabs((double)measured.x - (t0[0] * cos(angle) + side[0] * sin(angle))),
+        acc_larger(fabs((double)measured.y - (t0[1] * cos(angle) + side[1] * sin(angle))),
+                   fabs((double)measured.z - (t0[2] * cos(angle) + side[2] * sin(angle)))));
 }
 
 static void tangent_from_angle11_error(acc* a)
@@ -574,7 +575,7 @@ static double srgb_difference(hdrp_v3 a, hdrp_v3 b)
     for (int i = 0; i < 3; ++i) {
         double ex = x[i] <= 0.0031308 ? 12.92 * x[i] : 1.055 * pow(x[i], 1.0 / 2.4) - 0.055;
         double ey = y[i] <= 0.0031308 ? 12.92 * y[i] : 1.055 * pow(y[i], 1.0 / 2.4) - 0.055;
-        worst = fmax(worst, fabs(ex - ey));
+        worst = acc_larger(worst, fabs(ex - ey));
     }
     return worst;
 }

@@ -52,8 +52,15 @@ void acc_describe(acc* a, const char* format, ...);
 double acc_relative(double measured, double reference);
 /* Error in units in the last place of the reference rounded to float (denormals: of FLT_MIN). */
 double acc_ulp(double measured, double reference);
-/* Angle between two vectors of any length, in degrees; precise for small angles. */
+/* Angle between two vectors of any length, in degrees; precise for small angles. NaN when
+ * either has no direction. */
 double acc_degrees(const double a[3], const double b[3]);
+
+/* The larger; NaN when either is NaN, which fmax would drop. */
+static inline double acc_larger(double a, double b)
+{
+    return a >= b || isnan(a) ? a : b;
+}
 
 /* A fixed sequence per entry: every run and every build sees the same inputs. */
 uint64_t acc_random_bits(acc* a);

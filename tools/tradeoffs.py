@@ -1,0 +1,363 @@
+#!/usr/bin/env python3
+"""Writes docs/tradeoffs.md from recorded measurements: tradeoffs.py [--check].
+
+Nothing is measured here. Errors come from tests/accuracy/recorded.csv, half precision from half.csv
+beside it, costs on a CPU and on AMD GPUs from bench/results; each of those files is written by the
+command that the document names, and has a test or a benchmark behind it. --check compares the text
+with what is committed. tools/tradeoffs_charts.py draws the same numbers.
+
+Which functions are alternatives to each other is said in tools/tradeoffs_topics.csv, and what to
+think of them in TOPICS below. Where two CPUs have results, the one that sorts first is shown.
+"""
+import csv
+import pathlib
+import re
+import sys
+from dataclasses import dataclass
+
+import hdrp_api
+
+ROOT = hdrp_api.ROOT
+DOCUMENT = ROOT / "docs/tradeoffs.md"
+RESULTS = ROOT / "bench/results"
+GPU = "vega10"  # the family shown where there is room for one
+FAMILIES = ("bonaire", "vega10", "gfx1100")
+
+# topic -> title and what a reader should know before choosing. Numbers belong into the tables.
+TOPICS = {
+    "normal codec 12 bits": (
+        "Normals in 24 bits", "For a GBuffer. Rounding is what a shader can afford; the search looks "
+        "at four neighbours and suits baking. SNORM holds the poles exactly."),
+    "normal codec 8 bits": (
+        "Normals in 16 bits", "Shows banding in reflections; good for diffuse probes and small "
+        "meshes. The search is worth most here."),
+    "normal codec 16 bits": (
+        "Normals in 32 bits", "Vertex data: finer than floats need, cheaper than three of them."),
+    "tangent angle 11 bits": (
+        "Tangents as an angle", "Even steps fill the range; the talk's code leaves some unused."),
+    "acos": ("Arc cosine", "On a CPU take the fast one for angles of lobes and lights and the exact "
+             "one where an angle is compared or unwrapped; the built-in is the C library's, in no "
+             "loop. A GPU's own is as cheap as the fast one, but Vulkan promises little of it."),
+    "atan2": ("Arc tangent of two", "The same choice as for the arc cosine."),
+    "exp2": ("Power of two", "The fast one vectorises where the C library has no vector form. On a "
+             "GPU the built-in is one instruction."),
+    "log2": ("Logarithm to base two", "The same choice as for the power of two."),
+    "pow": ("Power", "The error of the fast one grows with the exponent of the result; for colours "
+            "it is far smaller than its worst."),
+    "sine and cosine": ("Sine and cosine", "The fast one is for points on discs and rings. Vulkan "
+                        "promises no more of its own."),
+    "1/sqrt": ("Inverse square root", "The fast one is for processors without the instruction."),
+    "sRGB encoding": ("sRGB from linear", "The fast one is what older engines store: visible in "
+                      "dark greys when mixed with the exact inverse."),
+    "sRGB decoding": ("Linear from sRGB", "The same choice as for encoding."),
+    "colour temperature": ("Colour temperature", "The published fit is against another observer and "
+                           "has a step near 6570 K."),
+    "small floats": ("Small floats", "All round to nearest. Truncation, which engines use, darkens "
+                     "by half a step on average and turns greys yellow."),
+    "Fresnel": ("Fresnel reflectance of dielectrics", "Schlick needs no square root and is what "
+                "artists' F0 is made for; the exact one knows the index of refraction."),
+    "coat F0": ("F0 below a clear coat", "The exact form costs one root and one division."),
+    "FGD": ("Directional albedo of GGX", "The fit needs no texture; the table is a fetch; the "
+            "quadrature is how tables are made."),
+    "iridescence": ("Thin-film iridescence", "The fast one is the shape of the talk's, without its "
+                    "defects; the recommended one follows the spectrum; the exact one sums it."),
+    "GGX visibility": ("GGX visibility", "The fast one drops the roots; its error grows with "
+                       "roughness at grazing angles."),
+    "environment irradiance": ("Irradiance of a sky", "Nine coefficients blur a sun; the cube does "
+                               "not."),
+}
+
+
+def rows(path):
+    """The rows of a CSV file without its remarks; none when there is no such file."""
+    if not path or not path.exists():
+        return []
+    lines = [line for line in path.read_text().split("\n") if line and not line.startswith("#")]
+    return list(csv.DictReader(lines))
+
+
+def remarks(path):
+    """The remarks at the top of a CSV file."""
+    if not path or not path.exists():
+        return []
+    return [line[1:].strip() for line in path.read_text().split("\n") if line.startswith("#")]
+
+
+def first_result(pattern):
+    return next(iter(sorted(RESULTS.glob(pattern))), None)
+
+
+@dataclass
+class Variant:
+    """What is known of one function. Strings are shown as they are recorded."""
+    topic: str
+    label: str
+    function: str
+    take: bool
+    unit: str
+    claim: str
+    worst: str
+    mean: str
+    ns: str
+    instructions: str
+    vgprs: str
+    half: str
+
+
+class Data:
+    def __init__(self):
+        self.cpu_file = first_result("cpu_*.csv")
+        self.gcn_file = first_result("gcn_*.csv")
+        self.features_cpu_file = first_result("features_cpu_*.csv")
+        self.features_render_file = first_result("features_render_*.csv")
+        self.published = rows(ROOT / "tests/published/recorded.csv")
+        self.prefilters = rows(first_result("prefilters_cpu_*.csv"))
+        self.recorded_file = ROOT / "tests/accuracy/recorded.csv"
+        self.recorded = {row["id"]: row for row in rows(self.recorded_file)}
+        self.half = {row["id"]: row for row in rows(ROOT / "tests/accuracy/half.csv")}
+        self.cpu = rows(self.cpu_file)
+        self.gcn = rows(self.gcn_file)
+        self.features_cpu = rows(self.features_cpu_file)
+        self.features_render = rows(self.features_render_file)
+        self.variants = [self.variant(**row) for row in rows(ROOT / "tools/tradeoffs_topics.csv")]
+
+    def worst(self, accuracy_id):
+        """(max, mean) of the worst build family, as recorded."""
+        row = self.recorded.get(accuracy_id, {})
+
+        def largest(suffix):
+            return max((value for key, value in row.items() if key.endswith(suffix) and value),
+                       key=float, default="")
+        return largest("_max"), largest("_mean")
+
+    def ns(self, function, build="gcc", form="vector"):
+        return next((row["ns"] for row in self.cpu if (row["name"], row["build"], row["form"]) ==
+                     (function, build, form)), "")
+
+    def gpu(self, name, column, family=GPU, kind="formula"):
+        return next((row[column] for row in self.gcn if (row["kind"], row["name"], row["family"])
+                     == (kind, name, family)), "")
+
+    def variant(self, topic, function, accuracy_id, label, take):
+        row = self.recorded.get(accuracy_id, {})
+        worst, mean = self.worst(accuracy_id)
+        return Variant(topic, label, function, take == "yes", row.get("unit", ""), row.get("claim", ""), worst,
+                       mean, self.ns(function), self.gpu(function, "instructions"),
+                       self.gpu(function, "vgprs"), self.half.get(accuracy_id, {}).get("usable", ""))
+
+    def topics(self):
+        """topic -> its variants, the worst first, in the order of the file."""
+        result = {}
+        for variant in self.variants:
+            result.setdefault(variant.topic, []).append(variant)
+        for variants in result.values():
+            variants.sort(key=lambda v: -float(v.worst or "inf"))
+        return result
+
+
+def table(heads, lines, align):
+    """A Markdown table; align has l or r for each column."""
+    rule = ["---:" if a == "r" else "---" for a in align]
+    return "\n".join("| " + " | ".join(cells) + " |" for cells in [heads, rule, *lines]) + "\n"
+
+
+def shown(text, digits=3):
+    """A recorded number for people, a dash where there is none."""
+    return f"{float(text):.{digits}g}" if text else "–"
+
+
+def code(name):
+    return f"`{name}`"
+
+
+def minute(data):
+    """One line for each topic: what to take, and what the alternatives buy."""
+    lines = []
+    for topic, variants in data.topics().items():
+        def named(variant):
+            cost = f", {variant.ns} ns" if variant.ns else ""
+            return f"{code(variant.function)} ({shown(variant.worst)}{cost})"
+        best = next(v for v in variants if v.take)
+        others = [v for v in variants if v is not best]
+        better = [v for v in others if float(v.worst or "inf") < float(best.worst or "inf")]
+        less = [v for v in others if v not in better]
+        lines.append([f"[{TOPICS[topic][0]}](#{anchor(TOPICS[topic][0])})", named(best),
+                      "<br>".join(map(named, less)) or "–",
+                      "<br>".join(map(named, better)) or "–",
+                      variants[0].unit])
+    return table(["for", "take", "less exact", "more exact", "worst error, in"], lines, "lllll")
+
+
+def slug(topic):
+    """A topic as part of a file name."""
+    return re.sub(r"\W+", "_", topic.lower())
+
+
+def anchor(title):
+    return re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-")
+
+
+def topic_section(topic, variants):
+    title, advice = TOPICS[topic]
+    unit = variants[0].unit
+    heads = ["variant", "function", f"worst, {unit}", "mean", "ns", "instructions", "VGPRs", "half"]
+    lines = [[v.label, code(v.function), shown(v.worst), shown(v.mean), v.ns or "–",
+              v.instructions or "–", v.vgprs or "–", v.half or "–"] for v in variants]
+    return (f"### {title}\n\n{advice}\n\n![{title}: worst error against cost]"
+            f"(images/tradeoffs_{slug(topic)}.svg)\n\n" + table(heads, lines, "llrrrrrl"))
+
+
+def gpu_set(name):
+    """The name of a feature set in the probe: standard is not said of what has more."""
+    every = "coat+anisotropy+iridescence+transmission+refraction"
+    return every if name == "all" else name.replace("standard+", "")
+
+
+def features_table(data):
+    """Lit by feature set: what one more light costs a CPU and a GPU, and the registers of both."""
+    heads = ["feature set", "CPU ns"]
+    for family in FAMILIES:
+        heads += [f"{family} instructions", "VGPRs", "waves"]
+    lines = [[row["set"], row["ns"],
+              *(cell for family in FAMILIES for cell in (
+                  data.gpu(gpu_set(row["set"]), "instructions", family, "lit_light") or "–",
+                  data.gpu(gpu_set(row["set"]), "vgprs", family, "lit") or "–",
+                  data.gpu(gpu_set(row["set"]), "waves_per_simd", family, "lit") or "–"))]
+             for row in data.features_cpu]
+    return table(heads, lines, "l" + "r" * (len(heads) - 1))
+
+
+def pictures_table(data):
+    heads = ["scene", "quality", "feature", "", "ms", "error"]
+    lines = [[row["scene"], row["quality"], row["feature"], row["on"], row["milliseconds"],
+              shown(row["error"])] for row in data.features_render]
+    return table(heads, lines, "llllrr")
+
+
+def every_formula(data):
+    """All claims, by header."""
+    text = []
+    for path in hdrp_api.headers():
+        lines = []
+        for function in hdrp_api.functions(path):
+            claims = [c for c in hdrp_api.claims() if c.function == function.name]
+            for claim in claims:
+                worst, mean = data.worst(claim.id)
+                lines.append([code(function.name), f"{claim.bound:g} {claim.unit}", shown(worst),
+                              shown(mean), data.ns(function.name) or "–",
+                              *(data.gpu(function.name, "instructions", family) or "–"
+                                for family in FAMILIES),
+                              data.gpu(function.name, "vgprs") or "–",
+                              data.half.get(claim.id, {}).get("usable") or "–"])
+        if lines:
+            heads = ["function", "claim", "worst", "mean", "ns", *FAMILIES, "VGPRs", "half"]
+            text.append(f"### {path.name}\n\n" + table(heads, lines, "llrrrrrrrl"))
+    return "\n".join(text)
+
+
+def peers(data):
+    lines = [[code(row["name"]), row["build"], row["form"], row["ns"], row["peer"], row["peer_ns"],
+              row["ratio"]] for row in data.cpu if row["peer"]]
+    return table(["function", "compiler", "form", "ns", "peer", "its ns", "times faster"], lines,
+                 "lllrlrr")
+
+
+def published(data):
+    lines = [[row["topic"], code(row["form"]) if row["form"].startswith("hdrp_") else row["form"],
+              row["quantity"], f"{shown(row['max'])} {row['unit']}", shown(row["mean"]),
+              shown(row["bias"])] for row in data.published]
+    return table(["topic", "form", "quantity", "worst", "mean", "bias"], lines, "lllrrr")
+
+
+def skies(data):
+    lines = [[row["quantity"], row["sky"],
+              code(row["method"]) if row["method"].startswith("hdrp_") else row["method"],
+              row["setting"], shown(row["max"]), shown(row["mean"]), row["milliseconds"]]
+             for row in data.prefilters]
+    return table(["quantity", "sky", "method", "setting", "worst", "mean", "ms"], lines, "llllrrr")
+
+
+def document(data):
+    topics = "\n".join(topic_section(topic, variants)
+                       for topic, variants in data.topics().items())
+    return TEMPLATE.format(gpu=GPU, minute=minute(data), topics=topics, lit=features_table(data),
+                           pictures=pictures_table(data),
+                           peers=peers(data), published=published(data), skies=skies(data),
+                           formulas=every_formula(data),
+                           remarks="\n".join(f"- {remark}" for path in (
+                               data.recorded_file, data.cpu_file, data.gcn_file,
+                               data.features_cpu_file, data.features_render_file)
+                               for remark in remarks(path)))
+
+
+TEMPLATE = """# Trade-offs
+
+<!-- Generated by tools/tradeoffs.py from recorded measurements; `make tradeoffs` measures again. -->
+
+What each variant of a formula gets wrong, and what it costs. Errors are the worst and the mean over
+the documented range, against an independent reference in double precision, for the worst of eight
+builds (gcc and clang, -O0 and -O3, with and without fused multiply-add); a test fails when one of
+them moves in its third digit. *ns* is one call in a loop that gcc has vectorised, on one core.
+*Instructions* and *VGPRs* are a compute shader that does nothing else, compiled for AMD's {gpu}; the
+empty shader is in the number. *Half* says whether the formula still serves when every operation is
+rounded to 16 bits.
+
+## In one minute
+
+{minute}
+## Variants
+
+{topics}
+## What a feature costs
+
+One evaluation of the Lit model for one light. A feature that is off is not in the code: the
+instructions are those of a build that never had it, which tests compare.
+
+{lit}
+The same from the renderer: milliseconds of the lighting passes and the error of the picture against
+the path-traced reference, with a feature on and off, in a scene that needs it and in one that does
+not.
+
+![Image error against milliseconds](images/tradeoffs_render.svg)
+
+{pictures}
+## Skies
+
+GGX lobes and irradiance of a sky against brute force, relative to what is right, and one core's time
+for a whole map.
+
+{skies}
+## Against published forms
+
+The same inputs, the same reference.
+
+{published}
+## Against other libraries
+
+The same work, in the same run, on the same pinned core.
+
+{peers}
+## Every claim
+
+{formulas}
+## Where the numbers come from
+
+`make tradeoffs` measures everything anew and writes this page. Errors and instruction counts come
+out the same to the digit; nanoseconds and milliseconds do not.
+
+{remarks}
+"""
+
+
+def main():
+    if sys.argv[1:] not in ([], ["--check"]):
+        sys.exit(__doc__.split("\n")[0])
+    text = document(Data())
+    if not sys.argv[1:]:
+        DOCUMENT.write_text(text)
+    elif not DOCUMENT.exists() or DOCUMENT.read_text() != text:
+        sys.exit("tradeoffs: docs/tradeoffs.md is not what the measurements say; run tools/tradeoffs.py")
+
+
+if __name__ == "__main__":
+    main()
