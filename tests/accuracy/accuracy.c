@@ -79,7 +79,7 @@ double acc_degrees(const double a[3], const double b[3])
                        a[0] * b[1] - a[1] * b[0]};
     double s = sqrt(cross[0] * cross[0] + cross[1] * cross[1] + cross[2] * cross[2]);
     double c = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    return s > 0.0 || c != 0.0 ? atan2(s, c) * (180.0 / 3.14159265358979323846) : NAN;
+    return s > 0.0 || c != 0.0 ? atan2(s, c) * (180.0 / 3.14159265358979323846) : (double)NAN;
 }
 
 /* SplitMix64 (Steele, Lea and Flood 2014). */
