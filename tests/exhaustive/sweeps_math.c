@@ -6,7 +6,7 @@
 #include "planck.h"
 
 /* The references of the square roots and of the polynomials are the functions of libm in double;
- * strides leave the whole within its half hour. */
+ * strides keep the whole at a quarter of an hour of two processors. */
 
 EX_VALUES(rsqrt, hdrp_rsqrt)
 EX_ERROR(rsqrt, ex_relative(EX_Y(0), 1.0 / sqrt(x)))

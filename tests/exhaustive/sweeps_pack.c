@@ -149,7 +149,7 @@ const ex_sweep ex_sweeps_pack[] = {
      "at 8 10 12 and 16 bits",
      4,
      pack_snorm_codes_values,
-     {EX_CLAIM(pack_snorm_codes, -1.0f, 1.0f, 1u),
+     {EX_CLAIM(pack_snorm_codes, -1.0f, 1.0f, 3u),
       EX_CLAIM(pack_snorm_codes, -FLT_MAX, FLT_MAX, 61u)}},
     {"hdrp_pack_biased_snorm_target",
      "at 8 bits",
