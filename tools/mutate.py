@@ -173,7 +173,7 @@ class Mutator:
         mutant = Mutant(self.header.name, self.header.line_of(place[0]), owner, kind, text,
                         self.seen[owner, text])
         word = self.excluded.word(mutant)
-        if kind == "constant" and not word and is_limit(self.code, *place):
+        if kind == "constant" and word in ("", "coarse") and is_limit(self.code, *place):
             word = "limit"
         if word and word != "coarse":
             self.excluded.counts[word] += kind == "constant"

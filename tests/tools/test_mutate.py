@@ -76,6 +76,7 @@ class Mutate(unittest.TestCase):
         amounts = {m.key: m.amount for m in mutants if m.kind == "constant"}
         self.assertEqual(amounts["hdrp_scaled 0.25f 1"], 1e-2)
         self.assertEqual(amounts["HDRP_HALF 0.5f 1"], 1e-3)
+        self.assertNotIn("hdrp_scaled 1.0f 1", amounts)
 
     def test_names_and_words_that_match_nothing_are_told(self):
         excluded = mutate.Exclusions("guard hdrp_scaled 1e-6f 2\nguard hdrp_gone\n")

@@ -80,6 +80,8 @@ static void the_average_normal_tells_the_variance(void** state)
         assert_true(fabs(variance / (2.0 * sigma * sigma) - 1.0) < 0.15);
     }
     assert_true(hdrp_brdf_variance_from_average_normal(1.0f) == 0.0f);
+    /* By hand: slopes of variance 1/4, twice that in alpha^2. */
+    assert_true(fabsf(hdrp_brdf_variance_from_average_normal(0.8f) - 0.5f) < 1e-6f);
     assert_true(hdrp_brdf_variance_from_average_normal(0.6f) == 1.0f);
     assert_true(hdrp_brdf_variance_from_average_normal(0.0f) == 1.0f);
 }

@@ -188,6 +188,44 @@ static void the_specular_albedo_is_linear_in_the_table(void** state)
     assert_true(a.x == 0.0f);
 }
 
+/* What a lobe of albedo 1/2 misses, the bounces after the first bring back: as much again for F0 = 1,
+ * and in proportion to F0. */
+static void energy_compensation_grows_with_the_colour(void** state)
+{
+    const hdrp_brdf_fgd half = {0.5f, 0.0f};
+    (void)state;
+    hdrp_v3 c = hdrp_brdf_energy_compensation(half, hdrp_v3_make(0.25f, 0.5f, 1.0f));
+    assert_true(c.x == 1.25f && c.y == 1.5f && c.z == 2.0f);
+}
+
+static void expect_turned(hdrp_v3 a, hdrp_v3 b)
+{
+    assert_true(fabsf(a.x - b.z) < 1e-6f && fabsf(a.y - b.x) < 1e-6f && fabsf(a.z - b.y) < 1e-6f);
+}
+
+/* Colours (x, y, z) and (y, z, x) give results that are turned likewise. */
+static void channels_are_all_alike(void** state)
+{
+    hdrp_v3 f0 = hdrp_v3_make(0.04f, 0.3f, 0.9f), turned = hdrp_v3_make(0.3f, 0.9f, 0.04f);
+    (void)state;
+    for (float p = 0.1f; p < 1.0f; p += 0.2f) {
+        hdrp_brdf_fgd_fit fit = hdrp_brdf_fgd_fit_make(p);
+        hdrp_brdf_fgd fgd = hdrp_brdf_fgd_fast(0.4f, p);
+        hdrp_brdf_bounces a = hdrp_brdf_bounces_make(fit, f0, 1.0f);
+        hdrp_brdf_bounces b = hdrp_brdf_bounces_make(fit, turned, 1.0f);
+        expect_turned(a.reflected, b.reflected);
+        expect_turned(a.passed, b.passed);
+        expect_turned(hdrp_brdf_energy_compensation(fgd, f0),
+                      hdrp_brdf_energy_compensation(fgd, turned));
+        expect_turned(hdrp_brdf_specular_albedo(fgd, f0, 1.0f),
+                      hdrp_brdf_specular_albedo(fgd, turned, 1.0f));
+        expect_turned(hdrp_brdf_multiscatter(fit, 0.4f, 0.7f, f0, 1.0f),
+                      hdrp_brdf_multiscatter(fit, 0.4f, 0.7f, turned, 1.0f));
+        expect_turned(hdrp_brdf_diffuse(fit, 0.4f, 0.7f, f0, 1.0f),
+                      hdrp_brdf_diffuse(fit, 0.4f, 0.7f, turned, 1.0f));
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -203,6 +241,8 @@ int main(void)
         cmocka_unit_test(equal_widths_share_a_fit),
         cmocka_unit_test(the_sign_of_anisotropy_swaps_the_axes),
         cmocka_unit_test(the_specular_albedo_is_linear_in_the_table),
+        cmocka_unit_test(energy_compensation_grows_with_the_colour),
+        cmocka_unit_test(channels_are_all_alike),
     };
     return cmocka_run_group_tests(tests, bake, NULL);
 }
