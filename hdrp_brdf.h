@@ -639,7 +639,7 @@ HDRP_FN hdrp_brdf_lit_view hdrp_brdf_lit_view_make(hdrp_brdf_data d, hdrp_v3 v, 
             w, hdrp_i_brdf_slab_share(d.diffuse_color, hdrp_i_brdf_slab_transmittance(d)));
     }
     w.transmitted = hdrp_v3_splat(0.0f);
-    w.transmitted_alpha = w.alphas.t;
+    w.transmitted_alpha = HDRP_ALPHA_MIN;
     if ((features & HDRP_BRDF_FEATURE_REFRACTION) != 0u) {
         w = hdrp_i_brdf_lit_view_scale_diffuse(w, hdrp_v3_splat(1.0f - d.transmission));
         w.transmitted =
@@ -649,7 +649,7 @@ HDRP_FN hdrp_brdf_lit_view hdrp_brdf_lit_view_make(hdrp_brdf_data d, hdrp_v3 v, 
     }
     w.coat_v = w.v;
     w.coat_n_dot_v = w.n_dot_v;
-    w.coat_alpha = w.alphas.t;
+    w.coat_alpha = HDRP_ALPHA_MIN;
     w.below_coat = 1.0f;
     if ((features & HDRP_BRDF_FEATURE_CLEAR_COAT) != 0u) {
         w.coat_v = hdrp_i_brdf_facing(w.v, d.coat_normal);
