@@ -44,12 +44,12 @@ TOPICS = {
     "log2": ("Logarithm to base two", "The same choice as for the power of two."),
     "pow": ("Power", "The error of the fast one grows with the exponent of the result; for colours "
             "it is far smaller than its worst."),
-    "sine and cosine": ("Sine and cosine", "The fast one is for points on discs and rings. Vulkan "
-                        "promises no more of its own."),
+    "sine and cosine": ("Sine and cosine", "The fast one is for points on discs and rings. Both are "
+                        "better than what Vulkan promises of a device's own."),
     "1/sqrt": ("Inverse square root", "The fast one is for processors without the instruction."),
-    "sRGB encoding": ("sRGB from linear", "The fast one is what older engines store: visible in "
-                      "dark greys when mixed with the exact inverse."),
-    "sRGB decoding": ("Linear from sRGB", "The same choice as for encoding."),
+    "sRGB encoding": ("sRGB from linear", "Both give every 8-bit code right; the fast one is made of "
+                      "square roots, which vectorise, where the other asks the C library for a power."),
+    "sRGB decoding": ("Linear from sRGB", "The same choice: a polynomial, or a power."),
     "colour temperature": ("Colour temperature", "The published fit is against another observer and "
                            "has a step near 6570 K."),
     "small floats": ("Small floats", "All round to nearest. Truncation, which engines use, darkens "
@@ -57,12 +57,13 @@ TOPICS = {
     "Fresnel": ("Fresnel reflectance of dielectrics", "Schlick needs no square root and is what "
                 "artists' F0 is made for; the exact one knows the index of refraction."),
     "coat F0": ("F0 below a clear coat", "The exact form costs one root and one division."),
-    "FGD": ("Directional albedo of GGX", "The fit needs no texture; the table is a fetch; the "
+    "FGD": ("Directional albedo of GGX", "The fit needs no texture. The table is nearer on average, and "
+            "worse only at grazing views of smooth surfaces, which one texel has to hold. The "
             "quadrature is how tables are made."),
     "iridescence": ("Thin-film iridescence", "The fast one is the shape of the talk's, without its "
                     "defects; the recommended one follows the spectrum; the exact one sums it."),
-    "GGX visibility": ("GGX visibility", "The fast one drops the roots; its error grows with "
-                       "roughness at grazing angles."),
+    "GGX visibility": ("GGX visibility", "The fast one mixes two limits instead of taking roots: good "
+                       "for previews and for lights that do not graze."),
     "environment irradiance": ("Irradiance of a sky", "Nine coefficients blur a sun; the cube does "
                                "not."),
 }
@@ -229,7 +230,8 @@ def features_table(data):
 
 def pictures_table(data):
     heads = ["scene", "quality", "feature", "", "ms", "error"]
-    lines = [[row["scene"], row["quality"], row["feature"], row["on"], row["milliseconds"],
+    lines = [[row["scene"], row["quality"], row["feature"],
+              "on" if row["on"] == "1" else "off", row["milliseconds"],
               shown(row["error"])] for row in data.features_render]
     return table(heads, lines, "llllrr")
 

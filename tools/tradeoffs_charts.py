@@ -105,6 +105,7 @@ def draw_pictures(rows):
     qualities = list(dict.fromkeys(row["quality"] for row in rows))
     figure, panels = pyplot.subplots(1, len(qualities), figsize=(10, 3.6), sharey=True)
     for axes, quality in zip(panels, qualities):
+        ends = []
         for feature in dict.fromkeys(row["feature"] for row in rows):
             off, on = changed_pair(rows, quality, feature)
             xs = [float(off["milliseconds"]), float(on["milliseconds"])]
@@ -112,7 +113,9 @@ def draw_pictures(rows):
             axes.plot(xs, ys, "-", color=SOFT, linewidth=1)
             axes.plot(xs[0], ys[0], "o", color=RECOMMENDED, markerfacecolor="white")
             axes.plot(xs[1], ys[1], "o", color=RECOMMENDED)
-            axes.annotate(f"{feature}, {on['scene']}", (xs[1], ys[1]), xytext=(7, 0),
+            beside = sum(abs(math.log(ys[1] / y)) < 0.1 and x > xs[1] / 2 for x, y in ends)
+            ends.append((xs[1], ys[1]))
+            axes.annotate(f"{feature}, {on['scene']}", (xs[1], ys[1]), xytext=(7, 10 * beside),
                           textcoords="offset points", va="center", fontsize=8, color=INK)
         axes.set_title(f"{quality}: hollow without the feature, filled with it", fontsize=9.5,
                        loc="left", color=INK)
