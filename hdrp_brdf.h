@@ -343,10 +343,10 @@ struct hdrp_brdf_lit_view {
     hdrp_v3 specular_albedo; /* [0,1] of the base lobe, all bounces */
     hdrp_v3 diffuse_albedo;  /* [0,1] of the diffuse lobe on the side of v */
     hdrp_v3 transmitted;     /* [0,1] colour of refracted light, before the Fresnel term */
-    float transmitted_alpha; /* [HDRP_ALPHA_MIN,1] */
+    float transmitted_alpha; /* [HDRP_ALPHA_MIN,4] of what refracts, else of the base lobe */
     hdrp_v3 coat_v;          /* unit, v as the coat sees it: on its own side */
     float coat_n_dot_v;      /* [HDRP_BRDF_N_DOT_V_MIN,1] */
-    float coat_alpha;        /* [HDRP_ALPHA_MIN,1] */
+    float coat_alpha;        /* [HDRP_ALPHA_MIN,4] of the coat, else of the base lobe */
     float below_coat;        /* [0,1] share of light from v that the coat lets through */
 };
 HDRP_TYPEDEF(hdrp_brdf_lit_view)
@@ -639,7 +639,7 @@ HDRP_FN hdrp_brdf_lit_view hdrp_brdf_lit_view_make(hdrp_brdf_data d, hdrp_v3 v, 
             w, hdrp_i_brdf_slab_share(d.diffuse_color, hdrp_i_brdf_slab_transmittance(d)));
     }
     w.transmitted = hdrp_v3_splat(0.0f);
-    w.transmitted_alpha = HDRP_ALPHA_MIN;
+    w.transmitted_alpha = w.alphas.t;
     if ((features & HDRP_BRDF_FEATURE_REFRACTION) != 0u) {
         w = hdrp_i_brdf_lit_view_scale_diffuse(w, hdrp_v3_splat(1.0f - d.transmission));
         w.transmitted =
@@ -649,7 +649,7 @@ HDRP_FN hdrp_brdf_lit_view hdrp_brdf_lit_view_make(hdrp_brdf_data d, hdrp_v3 v, 
     }
     w.coat_v = w.v;
     w.coat_n_dot_v = w.n_dot_v;
-    w.coat_alpha = HDRP_ALPHA_MIN;
+    w.coat_alpha = w.alphas.t;
     w.below_coat = 1.0f;
     if ((features & HDRP_BRDF_FEATURE_CLEAR_COAT) != 0u) {
         w.coat_v = hdrp_i_brdf_facing(w.v, d.coat_normal);

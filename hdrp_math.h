@@ -23,7 +23,9 @@
  * vectorises square roots and selections and which change no result.
  *
  * Override macros, all optional and defined before the first inclusion:
- *     HDRP_FN   qualifier of formula functions      default "static inline" (C, C++)
+ *     HDRP_FN   qualifier of formula functions      default "static inline" (C, C++), always
+ *                                                   inlined in optimised builds: constant feature
+ *                                                   masks fold, loops vectorise
  *     HDRP_API  qualifier of algorithm functions    default "extern" (C, C++)
  *     HDRP_HLSL the compiler reads HLSL             default: set where DXC is recognised
  *
@@ -108,6 +110,12 @@ precision highp int;
 #ifndef HDRP_FN
 #if defined(__CUDACC__) || defined(__CUDA__)
 #define HDRP_FN static inline __attribute__((host)) __attribute__((device))
+#elif defined(__OPTIMIZE__) && defined(__GNUC__)
+/* Left to choose, compilers keep one body of a long formula for several calls, with run-time tests
+ * in place of constant feature masks, and loops around a call stay scalar. */
+#define HDRP_FN static inline __attribute__((always_inline))
+#elif defined(_MSC_VER)
+#define HDRP_FN static __forceinline
 #else
 #define HDRP_FN static inline
 #endif
@@ -833,7 +841,7 @@ HDRP_FN float hdrp_atan2_fast(float y, float x)
  *  error    <= 3e-7 absolute for x in [-1,1]  @accuracy acos_exact_absolute
  *  source   acos x = 2 asin sqrt((1 - x) / 2) beyond 1/2, as in Cody and Waite 1980, "Software
  *           Manual for the Elementary Functions"; coefficients own
- *  note     in a loop 2.5 times as costly as hdrp_acos_fast, a tenth of libm's */
+ *  note     in a loop 2.5 times as costly as hdrp_acos_fast, a tenth or less of libm's */
 HDRP_FN float hdrp_acos_exact(float x)
 {
     hdrp_u32 u = hdrp_bits_from_f32(x);
@@ -856,7 +864,7 @@ HDRP_FN float hdrp_acos_exact(float x)
  *  error    <= 2 ulp where the result is a normal float  @accuracy atan2_exact
  *  error    <= 3e-7 absolute                             @accuracy atan2_exact_absolute
  *  source   odd minimax polynomial of the smaller over the larger coordinate; coefficients own
- *  note     in a loop 1.4 times as costly as hdrp_atan2_fast, a twentieth of libm's */
+ *  note     in a loop up to 1.4 times as costly as hdrp_atan2_fast, a twentieth of libm's */
 HDRP_FN float hdrp_atan2_exact(float y, float x)
 {
     hdrp_u32 sx = hdrp_bits_from_f32(x);

@@ -79,7 +79,9 @@ def usable(row, float_max, r):
             float(row["absolute_max"]) <= LIMITS["absolute"]:
         return "yes"
     if r:
-        return inside(r)
+        # A walk that found nothing wrong went less far than the registry, which did.
+        walked = f"inside {r['parameter']} {r['first']} to {r['last']}"
+        return walked if inside(r) == "yes" else inside(r)
     if float(row["normal_max"]) <= float_max + limit and row["unit"] in ("relative", "ulp"):
         return f"inside results {HALF_MIN} to {HALF_MAX}"
     return "no"

@@ -27,18 +27,21 @@ FAMILIES = ("bonaire", "vega10", "gfx1100")
 TOPICS = {
     "normal codec 12 bits": (
         "Normals in 24 bits", "For a GBuffer. Rounding is what a shader can afford; the search looks "
-        "at four neighbours and suits baking. SNORM holds the poles exactly."),
+        "at four neighbours and suits baking. Rounded SNORM and UNORM are equally good but for the "
+        "axes, which SNORM holds exactly."),
     "normal codec 8 bits": (
         "Normals in 16 bits", "Shows banding in reflections; good for diffuse probes and small "
         "meshes. The search is worth most here."),
     "normal codec 16 bits": (
         "Normals in 32 bits", "Vertex data: finer than floats need, cheaper than three of them."),
     "tangent angle 11 bits": (
-        "Tangents as an angle", "Even steps fill the range; the talk's code leaves some unused."),
+        "Tangents as an angle", "Even steps fill the range, at the cost of an arc tangent of the C "
+                              "library; the code of the HDRP talk leaves some unused."),
     "acos": ("Arc cosine", "On a CPU take the fast one for angles of lobes and lights and the exact "
              "one where an angle is compared or unwrapped; the built-in is the C library's, in no "
              "loop. A GPU's own is as cheap as the fast one, but Vulkan promises little of it."),
-    "atan2": ("Arc tangent of two", "The same choice as for the arc cosine."),
+    "atan2": ("Arc tangent of two", "The same choice as for the arc cosine; on AMD the built-in is the "
+              "dearest of the three."),
     "exp2": ("Power of two", "The fast one vectorises where the C library has no vector form. On a "
              "GPU the built-in is one instruction."),
     "log2": ("Logarithm to base two", "The same choice as for the power of two."),
@@ -46,7 +49,7 @@ TOPICS = {
             "it is far smaller than its worst."),
     "sine and cosine": ("Sine and cosine", "The fast one is for points on discs and rings. Both are "
                         "better than what Vulkan promises of a device's own."),
-    "1/sqrt": ("Inverse square root", "The fast one is for processors without the instruction."),
+    "1/sqrt": ("Inverse square root", "The fast one is made of integer operations and products alone."),
     "sRGB encoding": ("sRGB from linear", "Both give every 8-bit code right; the fast one is made of "
                       "square roots, which vectorise, where the other asks the C library for a power."),
     "sRGB decoding": ("Linear from sRGB", "The same choice: a polynomial, or a power."),
@@ -176,17 +179,14 @@ def minute(data):
     lines = []
     for topic, variants in data.topics().items():
         def named(variant):
-            cost = f", {variant.ns} ns" if variant.ns else ""
-            return f"{code(variant.function)} ({shown(variant.worst)}{cost})"
+            cost = f"; {variant.ns} ns" if variant.ns else ""
+            return (f"{variant.label}: {code(variant.function)} ({shown(variant.worst)}, mean "
+                    f"{shown(variant.mean)}{cost})")
         best = next(v for v in variants if v.take)
         others = [v for v in variants if v is not best]
-        better = [v for v in others if float(v.worst or "inf") < float(best.worst or "inf")]
-        less = [v for v in others if v not in better]
         lines.append([f"[{TOPICS[topic][0]}](#{anchor(TOPICS[topic][0])})", named(best),
-                      "<br>".join(map(named, less)) or "–",
-                      "<br>".join(map(named, better)) or "–",
-                      variants[0].unit])
-    return table(["for", "take", "less exact", "more exact", "worst error, in"], lines, "lllll")
+                      "<br>".join(map(named, others)), variants[0].unit])
+    return table(["for", "take (worst error, mean; time)", "or", "error in"], lines, "llll")
 
 
 def slug(topic):
@@ -216,10 +216,11 @@ def gpu_set(name):
 
 def features_table(data):
     """Lit by feature set: what one more light costs a CPU and a GPU, and the registers of both."""
-    heads = ["feature set", "CPU ns"]
+    heads = ["feature set", "ns a pixel", "ns a light", f"{GPU} instructions a pixel"]
     for family in FAMILIES:
-        heads += [f"{family} instructions", "VGPRs", "waves"]
-    lines = [[row["set"], row["ns"],
+        heads += [f"{family} instructions a light", "VGPRs", "waves"]
+    lines = [[row["set"], row["view_ns"], row["ns"],
+              data.gpu(gpu_set(row["set"]), "instructions", GPU, "lit") or "–",
               *(cell for family in FAMILIES for cell in (
                   data.gpu(gpu_set(row["set"]), "instructions", family, "lit_light") or "–",
                   data.gpu(gpu_set(row["set"]), "vgprs", family, "lit") or "–",
@@ -299,12 +300,19 @@ TEMPLATE = """# Trade-offs
 What each variant of a formula gets wrong, and what it costs. Errors are the worst and the mean over
 the documented range, against an independent reference in double precision, for the worst of eight
 builds (gcc and clang, -O0 and -O3, with and without fused multiply-add); a test fails when one of
-them moves in its third digit. *ns* is one call in a loop that gcc has vectorised, on one core.
-*Instructions* and *VGPRs* are a compute shader that does nothing else, compiled for AMD's {gpu}; the
-empty shader is in the number. *Half* says whether the formula still serves when every operation is
+them moves in its third digit. The mean is over the inputs that the registry tries, which favour the
+ends of ranges. *ns* is one call in a loop compiled by gcc, on one core; compilers turn such a loop into
+vectors where the function calls nothing of the C library. *Instructions* are those of the formula in
+a compute shader for AMD's {gpu}, without loads and stores; *VGPRs* are the registers of that shader. *Half* says whether the formula still serves when every operation is
 rounded to 16 bits.
 
+"The talk" is the one on the High Definition Render Pipeline (Lagarde and Golubev 2018, see [REFERENCES.md](REFERENCES.md)).
+
 ## In one minute
+
+Where nothing is known of a user, the plain name is what we would take; for loops on a CPU the table
+names a `_fast` one where it loses next to nothing. On a GPU the built-in functions are one or a few
+instructions: the `_fast` ones are for CPUs.
 
 {minute}
 ## Variants
@@ -312,13 +320,16 @@ rounded to 16 bits.
 {topics}
 ## What a feature costs
 
-One evaluation of the Lit model for one light. A feature that is off is not in the code: the
-instructions are those of a build that never had it, which tests compare.
+The Lit model by feature set, once per pixel (`hdrp_brdf_lit_view_make`, with what it takes to load a
+material) and once per light (`hdrp_brdf_lit_eval`). A film is paid per pixel, a coat in both. A
+feature that is off is not in the code: the instructions are those of a build that never had it, which
+tests compare. At most 10 waves fit a SIMD of {gpu} and bonaire, 16 a SIMD of gfx1100, which the
+driver counts in pairs.
 
 {lit}
 The same from the renderer: milliseconds of the lighting passes and the error of the picture against
 the path-traced reference, with a feature on and off, in a scene that needs it and in one that does
-not.
+not. Times of equal work differ by up to a fifth from run to run; errors do not.
 
 ![Image error against milliseconds](images/tradeoffs_render.svg)
 
@@ -344,8 +355,10 @@ The same work, in the same run, on the same pinned core.
 {formulas}
 ## Where the numbers come from
 
-`make tradeoffs` measures everything anew and writes this page. Errors and instruction counts come
-out the same to the digit; nanoseconds and milliseconds do not.
+`make tradeoffs` measures anew and writes this page, all but the skies, which the build target
+`prefilters_table` prints. Errors and instruction counts come out the same to the digit, and tests
+fail when one moves; nanoseconds and milliseconds are records of one machine, the first by name in
+`bench/results`.
 
 {remarks}
 """

@@ -46,10 +46,12 @@ def scatter(axes, variants, cost, label):
     for x, y, variant in points:
         axes.plot(x, y, "o", markersize=7.5 if variant.take else 6,
                   color=RECOMMENDED if variant.take else OTHER)
+    # The same for all panels of a topic, whatever costs are known of a variant.
+    ys = [float(v.worst) for v in variants if float(v.worst or 0) > 0]
+    axes.set_ylim(min(ys) / 2.5, max(ys) * 2.5)
     if points:
-        xs, ys = [p[0] for p in points], [p[1] for p in points]
+        xs = [p[0] for p in points]
         axes.set_xlim(min(xs) / 1.5, max(xs) * (max(xs) / min(xs)) ** 0.5 * 2.0)
-        axes.set_ylim(min(ys) / 2.5, max(ys) * 2.5)
         label_points(axes, points)
     axes.xaxis.set_major_formatter(ticker.FormatStrFormatter("%g"))
     axes.xaxis.set_minor_formatter(ticker.NullFormatter())

@@ -6,7 +6,8 @@ from a copy of it in which the statements of that feature are cut out, so that n
 notice that they are dead. clang must make the same instructions and constants of both, to the byte.
 gcc, whose numbers of variables and blocks decide ties of the register allocator, must make as many
 of each instruction that computes something: moves, jumps and padding do not count. With the feature
-on they must differ, or the test would see nothing.
+on they must differ, or the test would see nothing. A second mask in the same file must not change
+what the first one computes: compilers like to share one body among calls.
 """
 import collections
 import pathlib
@@ -17,10 +18,13 @@ import tempfile
 
 FEATURES = ("CLEAR_COAT", "ANISOTROPY", "IRIDESCENCE", "TRANSMISSION", "REFRACTION")
 BUILDS = (("gcc", "-O2"), ("clang", "-O2"))
-FLAGS = ["-std=c11", "-march=x86-64-v3", "-fno-math-errno", "-fno-trapping-math", "-Wall", "-Wno-unused-variable",
-         "-Wno-unused-function"]
+FLAGS = ["-std=c11", "-march=x86-64-v3", "-fno-math-errno", "-fno-trapping-math", "-Wall",
+         "-Wno-unused-variable", "-Wno-unused-function"]
 # What gcc adds where it likes.
 NO_WORK = re.compile(r"v?mov|j|nop|xchg|data16|cs$|lea|push|pop|\.byte")
+
+# What a second mask may change of the first: what compilers keep for both, a constant here and there.
+MOST_CHANGE = 0.02
 
 
 def matching(text, start, closing):
@@ -65,11 +69,26 @@ def without(text, feature):
     return text
 
 
+def made(compiler, level, headers, source, folder, *definitions):
+    """The object file."""
+    target = folder / "lit.o"
+    subprocess.run([compiler, level, *FLAGS, f"-I{headers}", *definitions, "-c", str(source), "-o",
+                    str(target)], check=True)
+    return target
+
+
+def work_of_first(target):
+    """How many instructions each function of the first mask has that compute something."""
+    listing = subprocess.run(["objdump", "-d", "--no-show-raw-insn", str(target)], check=True,
+                             capture_output=True, text=True).stdout
+    functions = re.findall(r"<(first_\w+)>:\n(.*?)(?:\n\n|\Z)", listing, re.S)
+    return {name: sum(not NO_WORK.match(i) for i in re.findall(r"^ *[0-9a-f]+:\t(\S+)", body, re.M))
+            for name, body in functions}
+
+
 def compiled(compiler, level, headers, source, mask, folder):
     """What the compilers make of it, as far as it must be equal."""
-    target = folder / "lit.o"
-    subprocess.run([compiler, level, *FLAGS, f"-I{headers}", f"-DMASK={mask}", "-c", str(source),
-                    "-o", str(target)], check=True)
+    target = made(compiler, level, headers, source, folder, f"-DMASK={mask}")
     show = ["-s", "-j", ".text", "-j", ".rodata*"] if compiler == "clang" else []
     listing = subprocess.run(["objdump", "-d", "-r", "--no-show-raw-insn", *show, str(target)],
                              check=True, capture_output=True, text=True).stdout
@@ -96,6 +115,13 @@ def main():
         for compiler, level in BUILDS:
             on = compiled(compiler, level, root, source, f"({everything})", folder)
             plain = compiled(compiler, level, root, source, "0u", folder)
+            alone = work_of_first(made(compiler, level, root, source, folder, "-DMASK=0u"))
+            beside = work_of_first(made(compiler, level, root, source, folder, "-DMASK=0u",
+                                        f"-DOTHER_MASK=({everything})"))
+            checks += 1
+            if any(abs(alone[name] - beside[name]) > MOST_CHANGE * alone[name] for name in alone):
+                print(f"{compiler} {level}: a second mask changes what the first computes")
+                failures += 1
             for feature in FEATURES:
                 others = f"(({everything}) & ~HDRP_BRDF_FEATURE_{feature})"
                 for mask in ("0u", others):

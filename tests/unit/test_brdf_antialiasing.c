@@ -100,6 +100,8 @@ static void derivatives_tell_the_variance_of_a_pixel(void** state)
     assert_true(hdrp_brdf_variance_from_derivatives(steep, none, 0.25f, 0.18f) == 0.18f);
     assert_true(hdrp_brdf_variance_from_derivatives(broken, none, 0.25f, 0.18f) == 0.0f);
     assert_true(hdrp_brdf_variance_from_derivatives(none, broken, 0.25f, 0.18f) == 0.0f);
+    /* Normals on both sides of a pixel can differ by 2, no more. */
+    assert_true(hdrp_brdf_variance_from_derivatives(steep, none, 0.0625f, 1.0f) == 0.5f);
     hdrp_v3 huge = hdrp_v3_splat(HUGE_VALF);
     assert_true(hdrp_brdf_variance_from_derivatives(huge, huge, 0.25f, 0.18f) == 0.18f);
 }

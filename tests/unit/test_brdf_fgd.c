@@ -196,6 +196,10 @@ static void energy_compensation_grows_with_the_colour(void** state)
     (void)state;
     hdrp_v3 c = hdrp_brdf_energy_compensation(half, hdrp_v3_make(0.25f, 0.5f, 1.0f));
     assert_true(c.x == 1.25f && c.y == 1.5f && c.z == 2.0f);
+    /* A texel that was never baked makes a lobe bright, not infinite. */
+    const hdrp_brdf_fgd empty = {0.0f, 0.0f};
+    c = hdrp_brdf_energy_compensation(empty, hdrp_v3_splat(1.0f));
+    assert_true(fabsf(c.x - 20.0f) < 1e-4f);
 }
 
 static void expect_turned(hdrp_v3 a, hdrp_v3 b)

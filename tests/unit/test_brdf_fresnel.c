@@ -123,7 +123,8 @@ static void colours_convert_to_base_and_metallic(void** state)
     hdrp_v3 black = hdrp_v3_splat(0.0f), gold = hdrp_v3_make(1.0f, 0.77f, 0.34f);
     (void)state;
     hdrp_brdf_data d = hdrp_brdf_data_from_diffuse_specular(s, black, gold);
-    assert_true(d.metallic == 1.0f && d.base_color.x == 1.0f && d.base_color.z == 0.34f);
+    assert_true(d.metallic == 1.0f && d.base_color.x == 1.0f && d.base_color.y == 0.77f &&
+                d.base_color.z == 0.34f);
     d = hdrp_brdf_data_from_diffuse_specular(s, gold, hdrp_v3_splat(0.04f));
     assert_true(d.metallic < 1e-6f && fabsf(d.base_color.y - 0.77f) < 1e-6f);
     /* The colours of a half metal give it back. */

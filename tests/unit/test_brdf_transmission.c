@@ -122,6 +122,10 @@ static void refraction_ends_at_the_critical_angle_and_the_wrong_sides(void** sta
     /* Straight through, no interface to speak of: finite. */
     float t = hdrp_brdf_btdf_ggx(n, v, below, 0.0f, 1.0f);
     assert_true(t > 0.0f && t <= HDRP_FLT_MAX);
+    /* Indices that differ by less than a thousandth count as if by that. */
+    float nearest = hdrp_brdf_btdf_ggx(n, v, below, 0.5f, 1.001f);
+    assert_true(fabsf(hdrp_brdf_btdf_ggx(n, v, below, 0.5f, 1.0f) / nearest - 1.0f) < 1e-2f);
+    assert_true(fabsf(hdrp_brdf_btdf_ggx(n, v, below, 0.5f, 1.0005f) / nearest - 1.0f) < 1e-2f);
 }
 
 static void the_btdf_is_reciprocal(void** state)
