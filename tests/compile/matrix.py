@@ -157,7 +157,8 @@ class Matrix:
                     jobs.append(self.host_job(
                         compiler, language, ONE_STANDARD[language], f"{header.stem}-optimised",
                         self.define(header) + f'#include "{header.name}"\n',
-                        ["-O2", "-fkeep-inline-functions", "-c", "-o", "/dev/null"]))
+                        ["-O2", "-fkeep-inline-functions", "-DHDRP_FN=static inline", "-c", "-o",
+                         "/dev/null"]))
         few.update({f"{a.stem}-{b.stem}": self.pair_text(a, b) for a, b in self.pairs})
         return jobs + [self.host_job(compiler, language, standard, name, text)
                        for name, text in few.items() for standard in self.few_standards(language)]
