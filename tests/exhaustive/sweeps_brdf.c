@@ -47,7 +47,7 @@ EX_VALUES(brdf_variance_from_average_normal, hdrp_brdf_variance_from_average_nor
 
 const ex_sweep ex_sweeps_brdf[] = {
     EX_SWEEP(hdrp_brdf_schlick_weight, brdf_schlick_weight,
-             EX_CLAIM(brdf_schlick_weight, 0.0f, 0.99999994f, 3u)),
+             EX_CLAIM(brdf_schlick_weight, 0.0f, 0.99999994f, 1u)),
     EX_SWEEP(hdrp_brdf_ior_from_fresnel0, brdf_ior_from_fresnel0,
              EX_CLAIM(brdf_ior_from_fresnel0, 0.0f, 1.0f, 1u)),
     EX_SWEEP(hdrp_brdf_fresnel0_under_coat_fast, brdf_fresnel0_under_coat_fast,
