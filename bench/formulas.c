@@ -1,8 +1,5 @@
 /* formulas.c - loops over the formulas of hdrp.
  * SPDX-License-Identifier: MIT */
-/* Compilers vectorise no loop in which a call is left, and they leave calls of a long function that
- * is called in several places. */
-#define HDRP_FN static inline __attribute__((always_inline))
 /* A copy of the algorithms by each compiler; not inlined, as where they are in another file. */
 #define HDRP_API static __attribute__((unused, noinline))
 #define HDRP_BRDF_IMPLEMENTATION

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Holds the record of the full sweeps to the sources: exhaustive_check.py SUBSET.csv RECORDED.csv
 
-The full run takes a quarter of an hour and is not repeated by the tests; its subset is. This fails where the
+The full run takes half an hour and is not repeated by the tests; its subset is. This fails where the
 record is of other sweeps or other claims than the program has now, where its worst breaks a claim,
 and where the subset has found an input that is worse, which the full run must have seen too.
 """

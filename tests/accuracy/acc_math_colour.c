@@ -4,17 +4,7 @@
 
 #include "hdrp_math.h"
 #include "planck.h"
-
-/* IEC 61966-2-1 with the constants as printed there. */
-static double linear_from_srgb(double c)
-{
-    return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
-}
-
-static double srgb_from_linear(double x)
-{
-    return x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1.0 / 2.4) - 0.055;
-}
+#include "srgb_reference.h"
 
 /* Uniform, in powers of ten, and around the end of the straight piece. */
 static float unit_input(acc* a, int i, double knee)

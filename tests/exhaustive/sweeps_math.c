@@ -4,6 +4,7 @@
 
 #include "hdrp_math.h"
 #include "planck.h"
+#include "srgb_reference.h"
 
 /* The references of the square roots and of the polynomials are the functions of libm in double;
  * where those are slow and the range is long, strides keep the whole below half an hour. */
@@ -49,30 +50,19 @@ static void sincos_fast_values(const float* restrict x, float* restrict y, int n
 EX_ERROR(sincos_fast_sine, ex_absolute(EX_Y(0), sin(x)))
 EX_ERROR(sincos_fast_cosine, ex_absolute(EX_Y(1), cos(x)))
 
-/* IEC 61966-2-1 with the constants as printed there. */
-static double linear_of(double c)
-{
-    return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
-}
-
-static double code_of(double x)
-{
-    return x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1.0 / 2.4) - 0.055;
-}
-
 EX_VALUES(linear_from_srgb, hdrp_linear_from_srgb)
-EX_ERROR(linear_from_srgb, ex_relative(EX_Y(0), linear_of(x)))
-EX_ERROR(linear_from_srgb_hdr, ex_relative(EX_Y(0), linear_of(x)))
+EX_ERROR(linear_from_srgb, ex_relative(EX_Y(0), linear_from_srgb(x)))
+EX_ERROR(linear_from_srgb_hdr, ex_relative(EX_Y(0), linear_from_srgb(x)))
 
 EX_VALUES(srgb_from_linear, hdrp_srgb_from_linear)
-EX_ERROR(srgb_from_linear, ex_relative(EX_Y(0), code_of(x)))
+EX_ERROR(srgb_from_linear, ex_relative(EX_Y(0), srgb_from_linear(x)))
 
 EX_VALUES(linear_from_srgb_fast, hdrp_linear_from_srgb_fast)
-EX_ERROR(linear_from_srgb_fast, ex_relative(EX_Y(0), linear_of(x)))
-EX_ERROR(linear_from_srgb_fast_absolute, ex_absolute(EX_Y(0), linear_of(x)))
+EX_ERROR(linear_from_srgb_fast, ex_relative(EX_Y(0), linear_from_srgb(x)))
+EX_ERROR(linear_from_srgb_fast_absolute, ex_absolute(EX_Y(0), linear_from_srgb(x)))
 
 EX_VALUES(srgb_from_linear_fast, hdrp_srgb_from_linear_fast)
-EX_ERROR(srgb_from_linear_fast, ex_absolute(EX_Y(0), code_of(x)))
+EX_ERROR(srgb_from_linear_fast, ex_absolute(EX_Y(0), srgb_from_linear(x)))
 
 static double kelvin_error(double kelvin, const float* y, const double observer[CIE_COUNT][3],
                            bool whiten)

@@ -1,6 +1,5 @@
-/* loops_pack_brdf.c - as loops.c, for codecs and lobes, inlined by force and for AVX2.
+/* loops_pack_brdf.c - as loops.c, for codecs and lobes, for AVX2.
  * SPDX-License-Identifier: MIT */
-#define HDRP_FN static inline __attribute__((always_inline))
 #include "hdrp_pack.h"
 
 #define COUNT 4096
