@@ -36,7 +36,9 @@ DEPENDENCIES = {
     "env": "math env_image",
     "pack": "math brdf",
     "area": "math light",
-    "cull": "math light",
+    "cull_volume": "math light",
+    "cull_blocker": "math light cull_volume",
+    "cull": "math light cull_volume cull_blocker cull_variant",
     "vol": "math light cull",
     "gpu_vk": "math light brdf oit sss env pack area cull vol",
 }
