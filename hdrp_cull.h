@@ -468,3 +468,1092 @@ HDRP_API hdrp_result hdrp_cull_masks(const hdrp_cull_lists* lists, uint32_t firs
 #endif
 
 #endif /* HDRP_CULL_H */
+
+#if defined(HDRP_CULL_IMPLEMENTATION) && !defined(HDRP_GPU) && !defined(HDRP_I_CULL_IMPLEMENTED)
+#define HDRP_I_CULL_IMPLEMENTED
+
+/* Lists are the same bits whether or not the target has fused multiply-adds. */
+#if defined(__clang__)
+#pragma STDC FP_CONTRACT OFF
+#elif defined(__GNUC__)
+#pragma GCC push_options
+#pragma GCC optimize("fp-contract=off")
+#endif
+
+#if defined(__cplusplus) || defined(_MSC_VER)
+#define HDRP_I_CULL_RESTRICT __restrict
+#else
+#define HDRP_I_CULL_RESTRICT restrict
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- memory ---------------------------------------------------------------------------------- */
+
+/* Hands out parts of a block; with a NULL block it only counts. */
+typedef struct hdrp_i_cull_arena {
+    unsigned char* block;
+    size_t used;
+} hdrp_i_cull_arena;
+
+static void* hdrp_i_cull_take(hdrp_i_cull_arena* arena, size_t count, size_t size)
+{
+    void* place = arena->block ? arena->block + arena->used : NULL;
+    arena->used += HDRP_MEMORY_ROUND_UP(count * size);
+    return place;
+}
+
+static hdrp_result hdrp_i_cull_check_block(const void* memory, size_t bytes, size_t needed)
+{
+    if (!memory) {
+        return HDRP_ERROR_NULL_POINTER;
+    }
+    if ((uintptr_t)memory % HDRP_MEMORY_ALIGNMENT != 0u) {
+        return HDRP_ERROR_MEMORY_ALIGNMENT;
+    }
+    return bytes < needed ? HDRP_ERROR_MEMORY_TOO_SMALL : HDRP_OK;
+}
+
+static int hdrp_i_cull_bad_range(uint32_t first, uint32_t count, uint32_t end)
+{
+    return first > end || count > end - first;
+}
+
+/* ---- sets ------------------------------------------------------------------------------------ */
+
+static size_t hdrp_i_cull_place_set(hdrp_cull_set* set, uint32_t capacity, void* memory)
+{
+    hdrp_i_cull_arena arena;
+    arena.block = (unsigned char*)memory;
+    arena.used = 0u;
+    memset(set, 0, sizeof *set);
+    set->capacity = capacity;
+    set->shapes = (hdrp_cull_shape*)hdrp_i_cull_take(&arena, capacity, sizeof *set->shapes);
+    set->balls = (hdrp_v4*)hdrp_i_cull_take(&arena, capacity, sizeof *set->balls);
+    set->planes = (hdrp_v4*)hdrp_i_cull_take(&arena, (size_t)capacity * HDRP_CULL_PLANES_MAX,
+                                             sizeof *set->planes);
+    set->bounds = (hdrp_cull_bounds*)hdrp_i_cull_take(&arena, capacity, sizeof *set->bounds);
+    return arena.used;
+}
+
+HDRP_API size_t hdrp_cull_set_memory_size(uint32_t capacity)
+{
+    hdrp_cull_set set;
+    return capacity < 1u || capacity > HDRP_CULL_SHAPES_MAX
+               ? 0u
+               : hdrp_i_cull_place_set(&set, capacity, NULL);
+}
+
+HDRP_API hdrp_result hdrp_cull_set_init(hdrp_cull_set* set, uint32_t capacity, void* memory,
+                                        size_t memory_bytes)
+{
+    hdrp_result r;
+    size_t needed = hdrp_cull_set_memory_size(capacity);
+    if (!set) {
+        return HDRP_ERROR_NULL_POINTER;
+    }
+    if (needed == 0u) {
+        return HDRP_ERROR_BAD_ARGUMENT;
+    }
+    r = hdrp_i_cull_check_block(memory, memory_bytes, needed);
+    if (r == HDRP_OK) {
+        hdrp_i_cull_place_set(set, capacity, memory);
+    }
+    return r;
+}
+
+HDRP_API hdrp_result hdrp_cull_set_begin(hdrp_cull_set* set, const hdrp_cull_camera* camera,
+                                         uint32_t width_px, uint32_t height_px, uint32_t count)
+{
+    if (!set || !camera) {
+        return HDRP_ERROR_NULL_POINTER;
+    }
+    if (width_px < 1u || width_px > HDRP_CULL_SIZE_MAX || height_px < 1u ||
+        height_px > HDRP_CULL_SIZE_MAX || count > set->capacity) {
+        return HDRP_ERROR_BAD_ARGUMENT;
+    }
+    set->camera = *camera;
+    set->width_px = width_px;
+    set->height_px = height_px;
+    set->count = count;
+    return HDRP_OK;
+}
+
+HDRP_API hdrp_result hdrp_cull_set_project(hdrp_cull_set* set, const hdrp_cull_shape* shapes,
+                                           uint32_t first, uint32_t count)
+{
+    uint32_t i, k;
+    float orthographic;
+    if (!set || (!shapes && count > 0u)) {
+        return HDRP_ERROR_NULL_POINTER;
+    }
+    if (hdrp_i_cull_bad_range(first, count, set->count)) {
+        return HDRP_ERROR_BAD_ARGUMENT;
+    }
+    orthographic = set->camera.forward_orthographic.w;
+    for (i = first; i < first + count; ++i) {
+        hdrp_cull_shape s = hdrp_cull_shape_in_view(shapes[i], set->camera);
+        set->shapes[i] = s;
+        set->balls[i] = hdrp_cull_shape_ball(s);
+        set->bounds[i] =
+            hdrp_cull_shape_bounds(s, set->camera, (float)set->width_px, (float)set->height_px);
+        if (set->bounds[i].rect_px.x > set->bounds[i].rect_px.z) {
+            continue; /* not seen: nobody asks for its planes */
+        }
+        for (k = 0u; k < hdrp_cull_shape_plane_count(s); ++k) {
+            set->planes[(size_t)i * HDRP_CULL_PLANES_MAX + k] =
+                hdrp_cull_shape_plane(s, k, orthographic);
+        }
+    }
+    return HDRP_OK;
+}
+
+/* ---- lists ----------------------------------------------------------------------------------- */
+
+/* A block of 64 pixels or less is asked for as a whole first. */
+#define HDRP_I_CULL_COARSE_PX 64u
+
+/* The descriptor with its defaults; width_px is 0 where it is not valid. */
+static hdrp_cull_desc hdrp_i_cull_defaults(const hdrp_cull_desc* desc)
+{
+    hdrp_cull_desc d;
+    memset(&d, 0, sizeof d);
+    if (!desc) {
+        return d;
+    }
+    d = *desc;
+    d.tile_width_px = d.tile_width_px ? d.tile_width_px : 32u;
+    d.tile_height_px = d.tile_height_px ? d.tile_height_px : 32u;
+    d.slice_count = d.slice_count ? d.slice_count : 64u;
+    d.shape_capacity = d.shape_capacity ? d.shape_capacity : 1024u;
+    if (d.entry_capacity == 0u) {
+        d.entry_capacity = d.slice_count > 8u ? 32u * d.slice_count : 256u;
+    }
+    d.flags |= (d.flags & HDRP_CULL_BLOCKS) ? HDRP_CULL_PIXELS : 0u;
+    if (d.width_px > HDRP_CULL_SIZE_MAX || d.height_px > HDRP_CULL_SIZE_MAX || d.height_px < 1u ||
+        d.tile_width_px > HDRP_CULL_SIZE_MAX || d.tile_height_px > HDRP_CULL_SIZE_MAX ||
+        d.slice_count > HDRP_CULL_SLICES_MAX || d.shape_capacity > HDRP_CULL_SHAPES_MAX ||
+        d.entry_capacity > 65535u * d.slice_count || d.flags > 15u ||
+        ((d.flags & HDRP_CULL_PIXELS) && d.slice_count > 1u) || !(d.series_start_m >= 0.0f) ||
+        !(d.series_end_m >= 0.0f)) {
+        d.width_px = 0u;
+    }
+    return d;
+}
+
+/* Columns, rows and their product; 0 where cells or entries cannot be counted with 32 bits. */
+static uint32_t hdrp_i_cull_tiles(const hdrp_cull_desc* d, uint32_t* columns, uint32_t* rows)
+{
+    uint64_t tiles;
+    *columns = (d->width_px + d->tile_width_px - 1u) / d->tile_width_px;
+    *rows = (d->height_px + d->tile_height_px - 1u) / d->tile_height_px;
+    tiles = (uint64_t)*columns * *rows;
+    return tiles * d->slice_count > 0xffffffffu || tiles * d->entry_capacity > 0xffffffffu
+               ? 0u
+               : (uint32_t)tiles;
+}
+
+static size_t hdrp_i_cull_place_lists(hdrp_cull_lists* lists, uint32_t tiles, void* memory)
+{
+    hdrp_i_cull_arena arena;
+    size_t cells = (size_t)tiles * lists->desc.slice_count;
+    size_t entries = (size_t)tiles * lists->desc.entry_capacity;
+    arena.block = (unsigned char*)memory;
+    arena.used = 0u;
+    lists->tiles = (hdrp_v4*)hdrp_i_cull_take(&arena, tiles, sizeof *lists->tiles);
+    lists->cells = (hdrp_u32x4*)hdrp_i_cull_take(&arena, cells, sizeof *lists->cells);
+    lists->entries = (uint32_t*)hdrp_i_cull_take(&arena, entries, sizeof *lists->entries);
+    lists->tile_dropped = (uint32_t*)hdrp_i_cull_take(&arena, tiles, sizeof *lists->tile_dropped);
+    return arena.used;
+}
+
+HDRP_API size_t hdrp_cull_memory_size(const hdrp_cull_desc* desc)
+{
+    hdrp_cull_lists lists;
+    uint32_t columns, rows, tiles;
+    memset(&lists, 0, sizeof lists);
+    lists.desc = hdrp_i_cull_defaults(desc);
+    if (lists.desc.width_px == 0u) {
+        return 0u;
+    }
+    tiles = hdrp_i_cull_tiles(&lists.desc, &columns, &rows);
+    /* 4-byte entries and 16-byte cells, on a target whose sizes have 32 bits. */
+    if (tiles == 0u || ((uint64_t)tiles * lists.desc.entry_capacity * 4u +
+                        (uint64_t)tiles * lists.desc.slice_count * 16u + (uint64_t)tiles * 20u +
+                        64u) > (uint64_t)(SIZE_MAX / 2u)) {
+        return 0u;
+    }
+    return hdrp_i_cull_place_lists(&lists, tiles, NULL);
+}
+
+HDRP_API hdrp_result hdrp_cull_init(hdrp_cull_lists* lists, const hdrp_cull_desc* desc,
+                                    void* memory, size_t memory_bytes)
+{
+    hdrp_cull_desc d = hdrp_i_cull_defaults(desc);
+    size_t needed = hdrp_cull_memory_size(desc);
+    uint32_t columns, rows, tiles;
+    hdrp_result r;
+    if (!lists || !desc) {
+        return HDRP_ERROR_NULL_POINTER;
+    }
+    if (needed == 0u) {
+        return d.width_px == 0u ? HDRP_ERROR_BAD_ARGUMENT : HDRP_ERROR_TOO_LARGE;
+    }
+    r = hdrp_i_cull_check_block(memory, memory_bytes, needed);
+    if (r == HDRP_OK) {
+        memset(lists, 0, sizeof *lists);
+        lists->desc = d;
+        tiles = hdrp_i_cull_tiles(&d, &columns, &rows);
+        hdrp_i_cull_place_lists(lists, tiles, memory);
+        lists->grid.tiles = hdrp_u32x4_make(d.tile_width_px, d.tile_height_px, columns, rows);
+        memset(lists->tiles, 0, tiles * sizeof *lists->tiles);
+        memset(lists->cells, 0, (size_t)tiles * d.slice_count * sizeof *lists->cells);
+        memset(lists->tile_dropped, 0, tiles * sizeof *lists->tile_dropped);
+    }
+    return r;
+}
+
+static float hdrp_i_cull_tile_scale(const hdrp_cull_lists* lists, float farthest_m)
+{
+    int fixed = (lists->desc.flags & HDRP_CULL_ONE_SERIES) != 0u;
+    return fixed ? lists->grid.series.w : hdrp_cull_series_scale(lists->grid, farthest_m);
+}
+
+HDRP_API hdrp_result hdrp_cull_begin(hdrp_cull_lists* lists, const hdrp_cull_set* set)
+{
+    const hdrp_cull_desc* d;
+    hdrp_v4 unknown;
+    size_t i, tiles;
+    if (!lists || !set) {
+        return HDRP_ERROR_NULL_POINTER;
+    }
+    d = &lists->desc;
+    if (set->width_px != d->width_px || set->height_px != d->height_px) {
+        return HDRP_ERROR_BAD_ARGUMENT;
+    }
+    lists->camera = set->camera;
+    lists->grid = hdrp_cull_grid_make(
+        set->camera, hdrp_u32x4_make(d->width_px, d->height_px, d->slice_count, d->entry_capacity),
+        hdrp_u32x4_make(d->tile_width_px, d->tile_height_px, 0u, 0u), d->series_start_m,
+        d->series_end_m);
+    unknown =
+        hdrp_v4_make(set->camera.eye_near.w, set->camera.right_far.w, lists->grid.series.w, 0.0f);
+    tiles = (size_t)lists->grid.tiles.z * lists->grid.tiles.w;
+    for (i = 0u; i < tiles; ++i) {
+        lists->tiles[i] = unknown;
+    }
+    memset(lists->cells, 0, tiles * d->slice_count * sizeof *lists->cells);
+    memset(lists->tile_dropped, 0, tiles * sizeof *lists->tile_dropped);
+    return HDRP_OK;
+}
+
+/* ---- depth ----------------------------------------------------------------------------------- */
+
+/* Depths of a run of up to HDRP_I_CULL_RUN pixels, with sky, NaN and what is in front of the near
+ * plane as -1. */
+#define HDRP_I_CULL_RUN 64u
+static void hdrp_i_cull_read(const hdrp_cull_depth* depth, const hdrp_cull_camera* camera,
+                             const float* HDRP_I_CULL_RESTRICT texels, uint32_t count,
+                             float* HDRP_I_CULL_RESTRICT z)
+{
+    float near_m = camera->eye_near.w, far_m = camera->right_far.w;
+    uint32_t i;
+    for (i = 0u; i < count; ++i) {
+        z[i] = texels[i];
+    }
+    if (depth->device) {
+        hdrp_depth_params device = *depth->device;
+        for (i = 0u; i < count; ++i) {
+            z[i] = hdrp_view_depth(device, z[i]);
+        }
+    }
+    for (i = 0u; i < count; ++i) {
+        float seen = z[i] < near_m ? near_m : z[i];
+        z[i] = z[i] >= 0.0f && z[i] < far_m ? seen : -1.0f;
+    }
+}
+
+/* Widens the range of each column of a run. */
+static void hdrp_i_cull_widen(const float* HDRP_I_CULL_RESTRICT z, uint32_t count,
+                              float* HDRP_I_CULL_RESTRICT nearest,
+                              float* HDRP_I_CULL_RESTRICT farthest)
+{
+    uint32_t i;
+    for (i = 0u; i < count; ++i) {
+        float there = z[i] >= 0.0f ? z[i] : HDRP_FLT_MAX;
+        nearest[i] = there < nearest[i] ? there : nearest[i];
+        farthest[i] = z[i] > farthest[i] ? z[i] : farthest[i];
+    }
+}
+
+static hdrp_v4 hdrp_i_cull_tile_depth(const hdrp_cull_lists* lists, const hdrp_cull_depth* depth,
+                                      uint32_t column, uint32_t row)
+{
+    uint32_t x0 = column * lists->grid.tiles.x, y0 = row * lists->grid.tiles.y;
+    uint32_t x1 = x0 + lists->grid.tiles.x, y1 = y0 + lists->grid.tiles.y;
+    float z[HDRP_I_CULL_RUN], nearest[HDRP_I_CULL_RUN], farthest[HDRP_I_CULL_RUN];
+    float lo = HDRP_FLT_MAX, hi = -1.0f;
+    uint32_t x, y, i;
+    x1 = x1 < lists->desc.width_px ? x1 : lists->desc.width_px;
+    y1 = y1 < lists->desc.height_px ? y1 : lists->desc.height_px;
+    for (i = 0u; i < HDRP_I_CULL_RUN; ++i) {
+        nearest[i] = HDRP_FLT_MAX;
+        farthest[i] = -1.0f;
+    }
+    for (y = y0; y < y1; ++y) {
+        for (x = x0; x < x1; x += HDRP_I_CULL_RUN) {
+            uint32_t count = x1 - x < HDRP_I_CULL_RUN ? x1 - x : HDRP_I_CULL_RUN;
+            hdrp_i_cull_read(depth, &lists->camera, depth->texels + y * depth->row_stride + x,
+                             count, z);
+            hdrp_i_cull_widen(z, count, nearest, farthest);
+        }
+    }
+    for (i = 0u; i < HDRP_I_CULL_RUN; ++i) {
+        lo = hdrp_min(nearest[i], lo);
+        hi = hdrp_max(farthest[i], hi);
+    }
+    if (hi < 0.0f) { /* sky alone */
+        return hdrp_v4_make(1.0f, -1.0f, lists->grid.series.w, 0.0f);
+    }
+    return hdrp_v4_make(lo, hi, hdrp_i_cull_tile_scale(lists, hi), 0.0f);
+}
+
+HDRP_API hdrp_result hdrp_cull_measure_depth(hdrp_cull_lists* lists, const hdrp_cull_depth* depth,
+                                             uint32_t first_row, uint32_t row_count)
+{
+    uint32_t row, column;
+    if (!lists || !depth || !depth->texels) {
+        return HDRP_ERROR_NULL_POINTER;
+    }
+    if (hdrp_i_cull_bad_range(first_row, row_count, lists->grid.tiles.w) ||
+        depth->row_stride < lists->desc.width_px) {
+        return HDRP_ERROR_BAD_ARGUMENT;
+    }
+    for (row = first_row; row < first_row + row_count; ++row) {
+        for (column = 0u; column < lists->grid.tiles.z; ++column) {
+            lists->tiles[(size_t)row * lists->grid.tiles.z + column] =
+                hdrp_i_cull_tile_depth(lists, depth, column, row);
+        }
+    }
+    return HDRP_OK;
+}
+
+/* ---- lists of a tile --------------------------------------------------------------------------
+ * A coarse cell is a block of tiles. What is seen in it is a candidate for each of its tiles; what a
+ * tile finds among the candidates is a hit. Candidates lie in arrays of their own, one for each
+ * member, so that compilers test several of them at once. */
+
+typedef struct hdrp_i_cull_scratch {
+    uint16_t* coarse;       /* shapes of each coarse cell of a row */
+    uint32_t* coarse_count; /* how many */
+    uint16_t* candidate;    /* shapes of a coarse cell */
+    float *x, *y, *z, *radius;
+    float *left, *upper, *right, *lower;
+    float *bound_nearest, *bound_farthest;
+    float *nearest, *farthest; /* of candidates in a tile */
+    uint16_t* planar;          /* candidates that have planes */
+    float* plane[4];           /* x, y, z, w of plane k of planar p: [k * capacity + p] */
+    uint16_t* hit;             /* candidates of a tile */
+    float *hit_nearest, *hit_farthest;
+    uint16_t* blocks; /* of a hit: what it reaches */
+    uint16_t* keep;   /* of a hit: 0 where there is no room */
+    uint8_t *hit_first, *hit_last;
+    uint64_t* order;                    /* hits by importance */
+    float *pixel_x, *pixel_y, *pixel_z; /* of a tile, block by block */
+    uint32_t capacity;
+} hdrp_i_cull_scratch;
+
+/* What the functions of a tile share. */
+typedef struct hdrp_i_cull_job {
+    hdrp_cull_lists* lists;
+    const hdrp_cull_set* set;
+    const hdrp_cull_depth* depth;
+    hdrp_i_cull_scratch s;
+    uint32_t coarse_columns, coarse_rows;             /* tiles of a coarse cell */
+    uint32_t candidate_end[HDRP_CULL_CATEGORY_COUNT]; /* of each category */
+    uint32_t candidate_count, planar_count, hit_count;
+    uint32_t hit_end[HDRP_CULL_CATEGORY_COUNT];
+    uint32_t block_begin[17]; /* in the pixels of a tile */
+    uint32_t x0, y0, x1, y1;  /* of the tile, in px */
+} hdrp_i_cull_job;
+
+/* Tiles of a coarse cell along one side. */
+static uint32_t hdrp_i_cull_coarse_tiles(uint32_t tile_px)
+{
+    return tile_px * 2u <= HDRP_I_CULL_COARSE_PX ? HDRP_I_CULL_COARSE_PX / tile_px : 2u;
+}
+
+static float* hdrp_i_cull_floats(hdrp_i_cull_arena* arena, size_t count)
+{
+    return (float*)hdrp_i_cull_take(arena, count, sizeof(float));
+}
+
+static size_t hdrp_i_cull_place_scratch(hdrp_i_cull_scratch* s, const hdrp_cull_desc* d,
+                                        uint32_t columns, void* memory)
+{
+    hdrp_i_cull_arena a;
+    size_t n = d->shape_capacity;
+    size_t across = (columns + hdrp_i_cull_coarse_tiles(d->tile_width_px) - 1u) /
+                    hdrp_i_cull_coarse_tiles(d->tile_width_px);
+    size_t pixels =
+        (d->flags & HDRP_CULL_PIXELS) ? (size_t)d->tile_width_px * d->tile_height_px : 0u;
+    float** member[] = {
+        &s->x,       &s->y,        &s->z,           &s->radius,        &s->left,
+        &s->upper,   &s->right,    &s->lower,       &s->bound_nearest, &s->bound_farthest,
+        &s->nearest, &s->farthest, &s->hit_nearest, &s->hit_farthest};
+    size_t i;
+    a.block = (unsigned char*)memory;
+    a.used = 0u;
+    s->capacity = d->shape_capacity;
+    s->coarse = (uint16_t*)hdrp_i_cull_take(&a, across * n, sizeof(uint16_t));
+    s->coarse_count = (uint32_t*)hdrp_i_cull_take(&a, across, sizeof(uint32_t));
+    s->candidate = (uint16_t*)hdrp_i_cull_take(&a, n, sizeof(uint16_t));
+    for (i = 0u; i < sizeof member / sizeof member[0]; ++i) {
+        *member[i] = hdrp_i_cull_floats(&a, n);
+    }
+    s->planar = (uint16_t*)hdrp_i_cull_take(&a, n, sizeof(uint16_t));
+    for (i = 0u; i < 4u; ++i) {
+        s->plane[i] = hdrp_i_cull_floats(&a, n * HDRP_CULL_PLANES_MAX);
+    }
+    s->hit = (uint16_t*)hdrp_i_cull_take(&a, n, sizeof(uint16_t));
+    s->blocks = (uint16_t*)hdrp_i_cull_take(&a, n, sizeof(uint16_t));
+    s->keep = (uint16_t*)hdrp_i_cull_take(&a, n, sizeof(uint16_t));
+    s->hit_first = (uint8_t*)hdrp_i_cull_take(&a, n, 1u);
+    s->hit_last = (uint8_t*)hdrp_i_cull_take(&a, n, 1u);
+    s->order = (uint64_t*)hdrp_i_cull_take(&a, n, sizeof(uint64_t));
+    s->pixel_x = hdrp_i_cull_floats(&a, pixels);
+    s->pixel_y = hdrp_i_cull_floats(&a, pixels);
+    s->pixel_z = hdrp_i_cull_floats(&a, pixels);
+    return a.used;
+}
+
+HDRP_API size_t hdrp_cull_scratch_size(const hdrp_cull_desc* desc)
+{
+    hdrp_cull_desc d = hdrp_i_cull_defaults(desc);
+    hdrp_i_cull_scratch s;
+    uint32_t columns, rows;
+    if (d.width_px == 0u || hdrp_i_cull_tiles(&d, &columns, &rows) == 0u) {
+        return 0u;
+    }
+    return hdrp_i_cull_place_scratch(&s, &d, columns, NULL);
+}
+
+HDRP_API uint32_t hdrp_cull_rows(const hdrp_cull_lists* lists)
+{
+    uint32_t tiles = lists ? hdrp_i_cull_coarse_tiles(lists->desc.tile_height_px) : 1u;
+    return lists ? (lists->grid.tiles.w + tiles - 1u) / tiles : 0u;
+}
+
+/* Appends a shape to the coarse cells of a row that its rectangle reaches. */
+static void hdrp_i_cull_spread(hdrp_i_cull_job* job, uint32_t i, uint32_t across)
+{
+    hdrp_v4 rect = job->set->bounds[i].rect_px;
+    float cell_px = (float)(job->coarse_columns * job->lists->grid.tiles.x);
+    uint32_t first = (uint32_t)(hdrp_max(rect.x, 0.0f) / cell_px);
+    uint32_t last = (uint32_t)(hdrp_max(rect.z, 0.0f) / cell_px);
+    last = last < across ? last : across - 1u;
+    for (; first <= last; ++first) {
+        job->s.coarse[(size_t)first * job->s.capacity + job->s.coarse_count[first]++] = (uint16_t)i;
+    }
+}
+
+/* Shapes of each coarse cell of a row, by category and index. */
+static void hdrp_i_cull_collect(hdrp_i_cull_job* job, uint32_t coarse_row, uint32_t across)
+{
+    const hdrp_cull_set* set = job->set;
+    uint32_t tile_rows = job->coarse_rows * job->lists->grid.tiles.y;
+    float upper = (float)(coarse_row * tile_rows), lower = (float)((coarse_row + 1u) * tile_rows);
+    uint32_t present = 0u, category, i;
+    memset(job->s.coarse_count, 0, across * sizeof *job->s.coarse_count);
+    for (i = 0u; i < set->count; ++i) {
+        present |= 1u << hdrp_cull_shape_category(set->shapes[i]);
+    }
+    for (category = 0u; category < HDRP_CULL_CATEGORY_COUNT; ++category) {
+        for (i = 0u; present >> category & 1u && i < set->count; ++i) {
+            const hdrp_cull_bounds* b = &set->bounds[i];
+            if (b->rect_px.y <= lower && b->rect_px.w >= upper && b->rect_px.x <= b->rect_px.z &&
+                hdrp_cull_shape_category(set->shapes[i]) == category) {
+                hdrp_i_cull_spread(job, i, across);
+            }
+        }
+    }
+}
+
+static void hdrp_i_cull_gather_planes(hdrp_i_cull_job* job, uint32_t shape, uint32_t candidate)
+{
+    hdrp_i_cull_scratch* s = &job->s;
+    uint32_t count = hdrp_cull_shape_plane_count(job->set->shapes[shape]);
+    const hdrp_v4* planes = job->set->planes + (size_t)shape * HDRP_CULL_PLANES_MAX;
+    size_t at = job->planar_count;
+    uint32_t k;
+    if (count == 0u) {
+        return;
+    }
+    s->planar[job->planar_count++] = (uint16_t)candidate;
+    for (k = 0u; k < HDRP_CULL_PLANES_MAX; ++k, at += s->capacity) {
+        /* A normal of 0 excludes nothing. */
+        s->plane[0][at] = k < count ? planes[k].x : 0.0f;
+        s->plane[1][at] = k < count ? planes[k].y : 0.0f;
+        s->plane[2][at] = k < count ? planes[k].z : 0.0f;
+        s->plane[3][at] = k < count ? planes[k].w : 1.0f;
+    }
+}
+
+static void hdrp_i_cull_gather(hdrp_i_cull_job* job, uint32_t column)
+{
+    hdrp_i_cull_scratch* s = &job->s;
+    const uint16_t* shapes = s->coarse + (size_t)column * s->capacity;
+    uint32_t m, category;
+    job->candidate_count = s->coarse_count[column];
+    job->planar_count = 0u;
+    memset(job->candidate_end, 0, sizeof job->candidate_end);
+    for (m = 0u; m < job->candidate_count; ++m) {
+        uint32_t i = shapes[m];
+        hdrp_v4 ball = job->set->balls[i];
+        const hdrp_cull_bounds* b = &job->set->bounds[i];
+        s->candidate[m] = (uint16_t)i;
+        s->x[m] = ball.x;
+        s->y[m] = ball.y;
+        s->z[m] = ball.z;
+        s->radius[m] = ball.w;
+        s->left[m] = b->rect_px.x;
+        s->upper[m] = b->rect_px.y;
+        s->right[m] = b->rect_px.z;
+        s->lower[m] = b->rect_px.w;
+        s->bound_nearest[m] = b->nearest;
+        s->bound_farthest[m] = b->farthest;
+        hdrp_i_cull_gather_planes(job, i, m);
+        job->candidate_end[hdrp_cull_shape_category(job->set->shapes[i])] = m + 1u;
+    }
+    for (category = 1u; category < HDRP_CULL_CATEGORY_COUNT; ++category) {
+        if (job->candidate_end[category] < job->candidate_end[category - 1u]) {
+            job->candidate_end[category] = job->candidate_end[category - 1u];
+        }
+    }
+}
+
+/* ---- tests of candidates --------------------------------------------------------------------- */
+
+static void hdrp_i_cull_test_balls(const hdrp_i_cull_scratch* s, uint32_t count,
+                                   hdrp_cull_tile tile, float orthographic)
+{
+    const float* HDRP_I_CULL_RESTRICT x = s->x;
+    const float* HDRP_I_CULL_RESTRICT y = s->y;
+    const float* HDRP_I_CULL_RESTRICT z = s->z;
+    const float* HDRP_I_CULL_RESTRICT radius = s->radius;
+    const float* HDRP_I_CULL_RESTRICT bound_nearest = s->bound_nearest;
+    const float* HDRP_I_CULL_RESTRICT bound_farthest = s->bound_farthest;
+    float* HDRP_I_CULL_RESTRICT nearest = s->nearest;
+    float* HDRP_I_CULL_RESTRICT farthest = s->farthest;
+    uint32_t m;
+    /* The constant last argument leaves one loop without the other projection in it. */
+    if (orthographic > 0.0f) {
+        for (m = 0u; m < count; ++m) {
+            hdrp_cull_interval r =
+                hdrp_cull_interval_ball(tile, hdrp_v4_make(x[m], y[m], z[m], radius[m]), 1.0f);
+            nearest[m] = hdrp_max(r.nearest, bound_nearest[m]);
+            farthest[m] = hdrp_min(r.farthest, bound_farthest[m]);
+        }
+    } else {
+        for (m = 0u; m < count; ++m) {
+            hdrp_cull_interval r =
+                hdrp_cull_interval_ball(tile, hdrp_v4_make(x[m], y[m], z[m], radius[m]), 0.0f);
+            nearest[m] = hdrp_max(r.nearest, bound_nearest[m]);
+            farthest[m] = hdrp_min(r.farthest, bound_farthest[m]);
+        }
+    }
+}
+
+/* Instead of it: rectangles of pixels and depths alone. */
+static void hdrp_i_cull_test_bounds(const hdrp_i_cull_job* job, uint32_t count)
+{
+    const hdrp_i_cull_scratch* s = &job->s;
+    const float* HDRP_I_CULL_RESTRICT left = s->left;
+    const float* HDRP_I_CULL_RESTRICT upper = s->upper;
+    const float* HDRP_I_CULL_RESTRICT right = s->right;
+    const float* HDRP_I_CULL_RESTRICT lower = s->lower;
+    const float* HDRP_I_CULL_RESTRICT bound_nearest = s->bound_nearest;
+    const float* HDRP_I_CULL_RESTRICT bound_farthest = s->bound_farthest;
+    float* HDRP_I_CULL_RESTRICT nearest = s->nearest;
+    float* HDRP_I_CULL_RESTRICT farthest = s->farthest;
+    float x0 = (float)job->x0, y0 = (float)job->y0, x1 = (float)job->x1, y1 = (float)job->y1;
+    uint32_t m;
+    for (m = 0u; m < count; ++m) {
+        float in_x = left[m] <= x1 && right[m] >= x0 ? 1.0f : 0.0f;
+        float inside = upper[m] <= y1 && lower[m] >= y0 ? in_x : 0.0f;
+        nearest[m] = inside > 0.0f ? bound_nearest[m] : HDRP_FLT_MAX;
+        farthest[m] = bound_farthest[m];
+    }
+}
+
+static void hdrp_i_cull_test_plane(const hdrp_i_cull_scratch* s, size_t at, uint32_t count,
+                                   hdrp_cull_tile tile, float orthographic,
+                                   float* HDRP_I_CULL_RESTRICT nearest,
+                                   float* HDRP_I_CULL_RESTRICT farthest)
+{
+    const float* HDRP_I_CULL_RESTRICT x = s->plane[0] + at;
+    const float* HDRP_I_CULL_RESTRICT y = s->plane[1] + at;
+    const float* HDRP_I_CULL_RESTRICT z = s->plane[2] + at;
+    const float* HDRP_I_CULL_RESTRICT w = s->plane[3] + at;
+    uint32_t p;
+    if (orthographic > 0.0f) {
+        for (p = 0u; p < count; ++p) {
+            hdrp_cull_interval r;
+            r.nearest = nearest[p];
+            r.farthest = farthest[p];
+            r = hdrp_cull_interval_plane(r, tile, hdrp_v4_make(x[p], y[p], z[p], w[p]), 1.0f);
+            nearest[p] = r.nearest;
+            farthest[p] = r.farthest;
+        }
+    } else {
+        for (p = 0u; p < count; ++p) {
+            hdrp_cull_interval r;
+            r.nearest = nearest[p];
+            r.farthest = farthest[p];
+            r = hdrp_cull_interval_plane(r, tile, hdrp_v4_make(x[p], y[p], z[p], w[p]), 0.0f);
+            nearest[p] = r.nearest;
+            farthest[p] = r.farthest;
+        }
+    }
+}
+
+/* The intervals of candidates with planes, shortened. Those of hits are not used yet. */
+static void hdrp_i_cull_test_planes(hdrp_i_cull_job* job, hdrp_cull_tile tile, float orthographic)
+{
+    hdrp_i_cull_scratch* s = &job->s;
+    uint32_t p, k;
+    for (p = 0u; p < job->planar_count; ++p) {
+        s->hit_nearest[p] = s->nearest[s->planar[p]];
+        s->hit_farthest[p] = s->farthest[s->planar[p]];
+    }
+    for (k = 0u; k < HDRP_CULL_PLANES_MAX; ++k) {
+        hdrp_i_cull_test_plane(s, (size_t)k * s->capacity, job->planar_count, tile, orthographic,
+                               s->hit_nearest, s->hit_farthest);
+    }
+    for (p = 0u; p < job->planar_count; ++p) {
+        s->nearest[s->planar[p]] = s->hit_nearest[p];
+        s->farthest[s->planar[p]] = s->hit_farthest[p];
+    }
+}
+
+/* Depths are looked up with functions that may be contracted elsewhere: hdrp_cull_slice. */
+#define HDRP_I_CULL_DEPTH_MARGIN 2e-6f
+
+/* The candidates that are between two depths become hits. */
+static void hdrp_i_cull_hits(hdrp_i_cull_job* job, float lo, float hi)
+{
+    hdrp_i_cull_scratch* s = &job->s;
+    uint32_t m, n = 0u, category;
+    m = 0u;
+    for (category = 0u; category < HDRP_CULL_CATEGORY_COUNT; ++category) {
+        for (; m < job->candidate_end[category]; ++m) {
+            float a = s->nearest[m] * (1.0f - HDRP_I_CULL_DEPTH_MARGIN);
+            float b = s->farthest[m] * (1.0f + HDRP_I_CULL_DEPTH_MARGIN);
+            a = a > lo ? a : lo;
+            b = b < hi ? b : hi;
+            s->hit[n] = (uint16_t)m;
+            s->hit_nearest[n] = a;
+            s->hit_farthest[n] = b;
+            n += a <= b ? 1u : 0u;
+        }
+        job->hit_end[category] = n;
+    }
+    job->hit_count = n;
+}
+
+/* Keeps the hits whose `keep` is not 0. */
+static void hdrp_i_cull_keep(hdrp_i_cull_job* job, const uint16_t* keep)
+{
+    hdrp_i_cull_scratch* s = &job->s;
+    uint32_t h = 0u, n = 0u, category;
+    for (category = 0u; category < HDRP_CULL_CATEGORY_COUNT; ++category) {
+        for (; h < job->hit_end[category]; ++h) {
+            uint16_t kept = keep[h];
+            s->hit[n] = s->hit[h];
+            s->hit_first[n] = s->hit_first[h];
+            s->hit_last[n] = s->hit_last[h];
+            s->blocks[n] = s->blocks[h];
+            n += kept != 0u ? 1u : 0u;
+        }
+        job->hit_end[category] = n;
+    }
+    job->hit_count = n;
+}
+
+/* ---- pixels ---------------------------------------------------------------------------------- */
+
+/* Where the surfaces of a tile are, sixteenth by sixteenth; without those of sky. */
+static void hdrp_i_cull_read_pixels(hdrp_i_cull_job* job)
+{
+    const hdrp_cull_lists* lists = job->lists;
+    hdrp_i_cull_scratch* s = &job->s;
+    hdrp_v4 window = lists->camera.window;
+    float du = window.z / (float)lists->desc.width_px;
+    float dv = window.w / (float)lists->desc.height_px;
+    int flat = lists->camera.forward_orthographic.w > 0.0f;
+    uint32_t n = 0u, block, x, y, i;
+    for (block = 0u; block < 16u; ++block) {
+        uint32_t x0 = job->x0 + block % 4u * lists->grid.cells.z;
+        uint32_t y0 = job->y0 + block / 4u * lists->grid.cells.w;
+        uint32_t x1 = x0 + lists->grid.cells.z, y1 = y0 + lists->grid.cells.w;
+        x1 = x1 < job->x1 ? x1 : job->x1;
+        y1 = y1 < job->y1 ? y1 : job->y1;
+        job->block_begin[block] = n;
+        for (y = y0; y < y1; ++y) {
+            for (x = x0; x < x1; x += HDRP_I_CULL_RUN) {
+                uint32_t count = x1 - x < HDRP_I_CULL_RUN ? x1 - x : HDRP_I_CULL_RUN;
+                float z[HDRP_I_CULL_RUN];
+                float v = window.y + ((float)(lists->desc.height_px - y) - 0.5f) * dv;
+                hdrp_i_cull_read(job->depth, &lists->camera,
+                                 job->depth->texels + y * job->depth->row_stride + x, count, z);
+                for (i = 0u; i < count; ++i) {
+                    float u = window.x + ((float)(x + i) + 0.5f) * du;
+                    float k = flat ? 1.0f : z[i];
+                    s->pixel_x[n] = u * k;
+                    s->pixel_y[n] = v * k;
+                    s->pixel_z[n] = z[i];
+                    n += z[i] >= 0.0f ? 1u : 0u;
+                }
+            }
+        }
+    }
+    job->block_begin[16] = n;
+}
+
+/* Whether a shape reaches one of some pixels. */
+static uint32_t hdrp_i_cull_reaches(const hdrp_i_cull_scratch* s, hdrp_cull_shape shape,
+                                    uint32_t first, uint32_t end)
+{
+    const float* HDRP_I_CULL_RESTRICT x = s->pixel_x;
+    const float* HDRP_I_CULL_RESTRICT y = s->pixel_y;
+    const float* HDRP_I_CULL_RESTRICT z = s->pixel_z;
+    uint32_t reached = 0u, i;
+    for (i = first; i < end; ++i) {
+        float in = hdrp_cull_shape_contains(shape, hdrp_v3_make(x[i], y[i], z[i]));
+        reached |= in > 0.0f ? 1u : 0u;
+    }
+    return reached;
+}
+
+/* Marks which sixteenths each hit reaches, or with the other flag alone whether it reaches any. */
+static void hdrp_i_cull_test_pixels(hdrp_i_cull_job* job)
+{
+    hdrp_i_cull_scratch* s = &job->s;
+    int all = (job->lists->desc.flags & HDRP_CULL_BLOCKS) != 0u;
+    uint32_t h, block;
+    hdrp_i_cull_read_pixels(job);
+    for (h = 0u; h < job->hit_count; ++h) {
+        hdrp_cull_shape shape = job->set->shapes[s->candidate[s->hit[h]]];
+        uint32_t reached = 0u;
+        for (block = 0u; block < 16u && (all || reached == 0u); ++block) {
+            reached |=
+                hdrp_i_cull_reaches(s, shape, job->block_begin[block], job->block_begin[block + 1u])
+                << block;
+        }
+        s->blocks[h] = (uint16_t)(all || reached == 0u ? reached : 0xffffu);
+    }
+    hdrp_i_cull_keep(job, s->blocks);
+}
+
+/* ---- limits ---------------------------------------------------------------------------------- */
+
+static void hdrp_i_cull_sift(uint64_t* key, uint32_t root, uint32_t count)
+{
+    for (;;) {
+        uint32_t child = 2u * root + 1u;
+        uint64_t k = key[root];
+        if (child >= count) {
+            return;
+        }
+        child += child + 1u < count && key[child + 1u] > key[child] ? 1u : 0u;
+        if (k >= key[child]) {
+            return;
+        }
+        key[root] = key[child];
+        key[child] = k;
+        root = child;
+    }
+}
+
+static void hdrp_i_cull_sort(uint64_t* key, uint32_t count)
+{
+    uint32_t i;
+    for (i = count / 2u; i-- > 0u;) {
+        hdrp_i_cull_sift(key, i, count);
+    }
+    for (i = count; i-- > 1u;) {
+        uint64_t k = key[0];
+        key[0] = key[i];
+        key[i] = k;
+        hdrp_i_cull_sift(key, 0u, i);
+    }
+}
+
+/* Entries that the hits of a tile need. */
+static uint64_t hdrp_i_cull_needed(const hdrp_i_cull_job* job)
+{
+    uint64_t needed = 0u;
+    uint32_t h;
+    for (h = 0u; h < job->hit_count; ++h) {
+        needed += 1u + (uint64_t)(job->s.hit_last[h] - job->s.hit_first[h]);
+    }
+    return needed;
+}
+
+/* Leaves out what does not fit; returns how many. The order does not depend on anything but the
+ * shapes, so that the same ones are left out in the next frame. */
+static uint32_t hdrp_i_cull_limit(hdrp_i_cull_job* job)
+{
+    hdrp_i_cull_scratch* s = &job->s;
+    uint64_t room = job->lists->desc.entry_capacity;
+    uint32_t h, dropped = 0u, count = job->hit_count;
+    if (hdrp_i_cull_needed(job) <= room) {
+        return 0u;
+    }
+    for (h = 0u; h < count; ++h) {
+        hdrp_u32 importance = job->set->shapes[s->candidate[s->hit[h]]].bits.w;
+        /* The bits of floats that are not negative are ordered as the floats are. */
+        s->order[h] = (uint64_t)(~importance & 0x7fffffffu) << 32 |
+                      (uint64_t)s->candidate[s->hit[h]] << 16 | h;
+    }
+    hdrp_i_cull_sort(s->order, count);
+    for (h = 0u; h < count; ++h) {
+        uint32_t at = (uint32_t)(s->order[h] & 0xffffu);
+        uint64_t needed = 1u + (uint64_t)(s->hit_last[at] - s->hit_first[at]);
+        uint32_t fits = dropped == 0u && needed <= room ? 1u : 0u;
+        room -= fits ? needed : 0u;
+        dropped += fits ? 0u : 1u;
+        s->keep[at] = (uint16_t)fits;
+    }
+    hdrp_i_cull_keep(job, s->keep);
+    return dropped;
+}
+
+/* ---- cells ----------------------------------------------------------------------------------- */
+
+/* The slices of each hit. */
+static void hdrp_i_cull_slices(hdrp_i_cull_job* job, float scale)
+{
+    const float* HDRP_I_CULL_RESTRICT nearest = job->s.hit_nearest;
+    const float* HDRP_I_CULL_RESTRICT farthest = job->s.hit_farthest;
+    uint8_t* HDRP_I_CULL_RESTRICT first = job->s.hit_first;
+    uint8_t* HDRP_I_CULL_RESTRICT last = job->s.hit_last;
+    hdrp_cull_grid grid = job->lists->grid;
+    uint32_t h;
+    for (h = 0u; h < job->hit_count; ++h) {
+        first[h] = (uint8_t)hdrp_cull_slice(grid, scale, nearest[h]);
+        last[h] = (uint8_t)hdrp_cull_slice(grid, scale, farthest[h]);
+    }
+}
+
+/* How many hits of each category begin, and end, in each slice, summed up to those that are there. */
+static void
+hdrp_i_cull_count_slices(const hdrp_i_cull_job* job,
+                         uint32_t counts[HDRP_CULL_CATEGORY_COUNT][HDRP_CULL_SLICES_MAX])
+{
+    uint32_t slices = job->lists->desc.slice_count;
+    uint32_t category, h = 0u, k, sum;
+    for (category = 0u; category < HDRP_CULL_CATEGORY_COUNT; ++category) {
+        memset(counts[category], 0, slices * sizeof counts[category][0]);
+        if (h == job->hit_end[category]) {
+            continue;
+        }
+        for (; h < job->hit_end[category]; ++h) {
+            counts[category][job->s.hit_first[h]] += 1u;
+            if (job->s.hit_last[h] + 1u < slices) {
+                counts[category][job->s.hit_last[h] + 1u] -= 1u;
+            }
+        }
+        for (k = 0u, sum = 0u; k < slices; ++k) {
+            sum += counts[category][k];
+            counts[category][k] = sum;
+        }
+    }
+}
+
+/* Writes the cells and the entries of a tile. */
+static void hdrp_i_cull_write(hdrp_i_cull_job* job, uint32_t tile, uint32_t dropped)
+{
+    uint32_t counts[HDRP_CULL_CATEGORY_COUNT][HDRP_CULL_SLICES_MAX];
+    uint32_t next[HDRP_CULL_SLICES_MAX];
+    hdrp_cull_lists* lists = job->lists;
+    uint32_t slices = lists->desc.slice_count, at = tile * lists->desc.entry_capacity, k, h;
+    hdrp_u32x4* cells = lists->cells + (size_t)tile * slices;
+    uint32_t* entries = lists->entries;
+    hdrp_i_cull_count_slices(job, counts);
+    for (k = 0u; k < slices; ++k) {
+        cells[k] = hdrp_u32x4_make(at, counts[0][k] | counts[1][k] << 16,
+                                   counts[2][k] | counts[3][k] << 16, dropped);
+        next[k] = at;
+        at += counts[0][k] + counts[1][k] + counts[2][k] + counts[3][k];
+    }
+    for (h = 0u; h < job->hit_count; ++h) {
+        uint32_t entry = (uint32_t)job->s.candidate[job->s.hit[h]] | (uint32_t)job->s.blocks[h]
+                                                                         << 16;
+        uint32_t last = job->s.hit_last[h];
+        for (k = job->s.hit_first[h]; k <= last; ++k) {
+            entries[next[k]++] = entry;
+        }
+    }
+    lists->tile_dropped[tile] = dropped;
+}
+
+static void hdrp_i_cull_build_tile(hdrp_i_cull_job* job, uint32_t column, uint32_t row)
+{
+    hdrp_cull_lists* lists = job->lists;
+    hdrp_u32x4 size = lists->grid.tiles;
+    uint32_t tile = row * size.z + column, h;
+    hdrp_v4 info = lists->tiles[tile];
+    float orthographic = lists->camera.forward_orthographic.w;
+    float lo = lists->camera.eye_near.w, hi = lists->camera.right_far.w;
+    job->x0 = column * size.x;
+    job->y0 = row * size.y;
+    job->x1 = job->x0 + size.x < lists->desc.width_px ? job->x0 + size.x : lists->desc.width_px;
+    job->y1 = job->y0 + size.y < lists->desc.height_px ? job->y0 + size.y : lists->desc.height_px;
+    if (lists->desc.slice_count == 1u) {
+        lo = info.x; /* nothing is between them where there is only sky */
+        hi = info.y;
+    }
+    if (lists->desc.flags & HDRP_CULL_FAST) {
+        hdrp_i_cull_test_bounds(job, job->candidate_count);
+    } else {
+        hdrp_cull_tile t = hdrp_cull_tile_make(
+            lists->camera, (float)job->x0, (float)job->y0, (float)job->x1, (float)job->y1,
+            (float)lists->desc.width_px, (float)lists->desc.height_px);
+        hdrp_i_cull_test_balls(&job->s, job->candidate_count, t, orthographic);
+        hdrp_i_cull_test_planes(job, t, orthographic);
+    }
+    hdrp_i_cull_hits(job, lo, hi);
+    hdrp_i_cull_slices(job, info.z);
+    for (h = 0u; h < job->hit_count; ++h) {
+        job->s.blocks[h] = 0xffffu;
+    }
+    if (lists->desc.flags & HDRP_CULL_PIXELS) {
+        hdrp_i_cull_test_pixels(job);
+    }
+    hdrp_i_cull_write(job, tile, hdrp_i_cull_limit(job));
+}
+
+static void hdrp_i_cull_build_row(hdrp_i_cull_job* job, uint32_t coarse_row)
+{
+    hdrp_u32x4 size = job->lists->grid.tiles;
+    uint32_t across = (size.z + job->coarse_columns - 1u) / job->coarse_columns;
+    uint32_t first_row = coarse_row * job->coarse_rows, cell, row, column;
+    hdrp_i_cull_collect(job, coarse_row, across);
+    for (cell = 0u; cell < across; ++cell) {
+        uint32_t begin = cell * job->coarse_columns, end = begin + job->coarse_columns;
+        hdrp_i_cull_gather(job, cell);
+        for (row = first_row; row < first_row + job->coarse_rows && row < size.w; ++row) {
+            for (column = begin; column < end && column < size.z; ++column) {
+                hdrp_i_cull_build_tile(job, column, row);
+            }
+        }
+    }
+}
+
+HDRP_API hdrp_result hdrp_cull_build(hdrp_cull_lists* lists, const hdrp_cull_set* set,
+                                     const hdrp_cull_depth* depth, uint32_t first_row,
+                                     uint32_t row_count, void* scratch, size_t scratch_bytes)
+{
+    hdrp_i_cull_job job;
+    hdrp_result r;
+    uint32_t row;
+    if (!lists || !set || ((lists->desc.flags & HDRP_CULL_PIXELS) && (!depth || !depth->texels))) {
+        return HDRP_ERROR_NULL_POINTER;
+    }
+    if (hdrp_i_cull_bad_range(first_row, row_count, hdrp_cull_rows(lists)) ||
+        set->count > lists->desc.shape_capacity || set->width_px != lists->desc.width_px ||
+        set->height_px != lists->desc.height_px ||
+        ((lists->desc.flags & HDRP_CULL_PIXELS) && depth->row_stride < lists->desc.width_px)) {
+        return HDRP_ERROR_BAD_ARGUMENT;
+    }
+    r = hdrp_i_cull_check_block(scratch, scratch_bytes, hdrp_cull_scratch_size(&lists->desc));
+    if (r != HDRP_OK) {
+        return r;
+    }
+    memset(&job, 0, sizeof job);
+    hdrp_i_cull_place_scratch(&job.s, &lists->desc, lists->grid.tiles.z, scratch);
+    job.lists = lists;
+    job.set = set;
+    job.depth = depth;
+    job.coarse_columns = hdrp_i_cull_coarse_tiles(lists->desc.tile_width_px);
+    job.coarse_rows = hdrp_i_cull_coarse_tiles(lists->desc.tile_height_px);
+    for (row = first_row; row < first_row + row_count; ++row) {
+        hdrp_i_cull_build_row(&job, row);
+    }
+    return HDRP_OK;
+}
+
+/* ---- reading --------------------------------------------------------------------------------- */
+
+HDRP_API hdrp_result hdrp_cull_count(const hdrp_cull_lists* lists, hdrp_cull_stats* stats)
+{
+    size_t tiles, i;
+    if (!lists || !stats) {
+        return HDRP_ERROR_NULL_POINTER;
+    }
+    memset(stats, 0, sizeof *stats);
+    tiles = (size_t)lists->grid.tiles.z * lists->grid.tiles.w;
+    for (i = 0u; i < tiles; ++i) {
+        stats->tiles_full += lists->tile_dropped[i] > 0u ? 1u : 0u;
+        stats->dropped += lists->tile_dropped[i];
+    }
+    for (i = 0u; i < tiles * lists->desc.slice_count; ++i) {
+        uint32_t length = hdrp_cull_last(lists->cells[i], HDRP_CULL_CATEGORY_DECAL) -
+                          hdrp_cull_first(lists->cells[i], HDRP_CULL_CATEGORY_PUNCTUAL);
+        stats->entries += length;
+        stats->longest = length > stats->longest ? length : stats->longest;
+    }
+    return HDRP_OK;
+}
+
+HDRP_API hdrp_result hdrp_cull_masks(const hdrp_cull_lists* lists, uint32_t first_tile,
+                                     uint32_t tile_count, uint32_t* words, uint32_t stride)
+{
+    size_t first, cells, c;
+    uint32_t i;
+    int writing;
+    if (!lists || (!words && tile_count > 0u)) {
+        return HDRP_ERROR_NULL_POINTER;
+    }
+    if (hdrp_i_cull_bad_range(first_tile, tile_count, lists->grid.tiles.z * lists->grid.tiles.w)) {
+        return HDRP_ERROR_BAD_ARGUMENT;
+    }
+    first = (size_t)first_tile * lists->desc.slice_count;
+    cells = (size_t)tile_count * lists->desc.slice_count;
+    for (writing = 0; writing < 2; ++writing) {
+        if (writing) {
+            memset(words, 0, cells * stride * sizeof *words);
+        }
+        for (c = 0u; c < cells; ++c) {
+            hdrp_u32x4 cell = lists->cells[first + c];
+            uint32_t last = hdrp_cull_last(cell, HDRP_CULL_CATEGORY_DECAL);
+            for (i = hdrp_cull_first(cell, HDRP_CULL_CATEGORY_PUNCTUAL); i < last; ++i) {
+                uint32_t shape = hdrp_cull_entry_index(lists->entries[i]);
+                if (!writing && shape / 32u >= stride) {
+                    return HDRP_ERROR_BAD_ARGUMENT;
+                }
+                if (writing) {
+                    words[c * stride + shape / 32u] |= 1u << (shape % 32u);
+                }
+            }
+        }
+    }
+    return HDRP_OK;
+}
+
+#ifdef __cplusplus
+}
+#endif
+
+#if defined(__clang__)
+#pragma STDC FP_CONTRACT DEFAULT
+#elif defined(__GNUC__)
+#pragma GCC pop_options
+#endif
+
+#undef HDRP_I_CULL_RESTRICT
+
+#endif /* HDRP_CULL_IMPLEMENTATION */
