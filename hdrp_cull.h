@@ -480,10 +480,13 @@ HDRP_API hdrp_result hdrp_cull_masks(const hdrp_cull_lists* lists, uint32_t firs
 #pragma GCC optimize("fp-contract=off")
 #endif
 
-#if defined(__cplusplus) || defined(_MSC_VER)
-#define HDRP_I_CULL_RESTRICT __restrict
+/* The turns of the loop that follows do not depend on each other: no two arrays overlap. */
+#if defined(__clang__)
+#define HDRP_I_CULL_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
+#elif defined(__GNUC__)
+#define HDRP_I_CULL_INDEPENDENT _Pragma("GCC ivdep")
 #else
-#define HDRP_I_CULL_RESTRICT restrict
+#define HDRP_I_CULL_INDEPENDENT
 #endif
 
 #ifdef __cplusplus
@@ -755,20 +758,22 @@ HDRP_API hdrp_result hdrp_cull_begin(hdrp_cull_lists* lists, const hdrp_cull_set
  * plane as -1. */
 #define HDRP_I_CULL_RUN 64u
 static void hdrp_i_cull_read(const hdrp_cull_depth* depth, const hdrp_cull_camera* camera,
-                             const float* HDRP_I_CULL_RESTRICT texels, uint32_t count,
-                             float* HDRP_I_CULL_RESTRICT z)
+                             const float* texels, uint32_t count, float* z)
 {
     float near_m = camera->eye_near.w, far_m = camera->right_far.w;
     uint32_t i;
+    HDRP_I_CULL_INDEPENDENT
     for (i = 0u; i < count; ++i) {
         z[i] = texels[i];
     }
     if (depth->device) {
         hdrp_depth_params device = *depth->device;
+        HDRP_I_CULL_INDEPENDENT
         for (i = 0u; i < count; ++i) {
             z[i] = hdrp_view_depth(device, z[i]);
         }
     }
+    HDRP_I_CULL_INDEPENDENT
     for (i = 0u; i < count; ++i) {
         float seen = z[i] < near_m ? near_m : z[i];
         z[i] = z[i] >= 0.0f && z[i] < far_m ? seen : -1.0f;
@@ -776,11 +781,10 @@ static void hdrp_i_cull_read(const hdrp_cull_depth* depth, const hdrp_cull_camer
 }
 
 /* Widens the range of each column of a run. */
-static void hdrp_i_cull_widen(const float* HDRP_I_CULL_RESTRICT z, uint32_t count,
-                              float* HDRP_I_CULL_RESTRICT nearest,
-                              float* HDRP_I_CULL_RESTRICT farthest)
+static void hdrp_i_cull_widen(const float* z, uint32_t count, float* nearest, float* farthest)
 {
     uint32_t i;
+    HDRP_I_CULL_INDEPENDENT
     for (i = 0u; i < count; ++i) {
         float there = z[i] >= 0.0f ? z[i] : HDRP_FLT_MAX;
         nearest[i] = there < nearest[i] ? there : nearest[i];
@@ -788,42 +792,54 @@ static void hdrp_i_cull_widen(const float* HDRP_I_CULL_RESTRICT z, uint32_t coun
     }
 }
 
-static hdrp_v4 hdrp_i_cull_tile_depth(const hdrp_cull_lists* lists, const hdrp_cull_depth* depth,
-                                      uint32_t column, uint32_t row)
+/* The range of a tile as its columns of pixels leave it. */
+static hdrp_v4 hdrp_i_cull_tile_of_range(const hdrp_cull_lists* lists, float nearest,
+                                         float farthest)
 {
-    uint32_t x0 = column * lists->grid.tiles.x, y0 = row * lists->grid.tiles.y;
-    uint32_t x1 = x0 + lists->grid.tiles.x, y1 = y0 + lists->grid.tiles.y;
-    float z[HDRP_I_CULL_RUN], nearest[HDRP_I_CULL_RUN], farthest[HDRP_I_CULL_RUN];
-    float lo = HDRP_FLT_MAX, hi = -1.0f;
-    uint32_t x, y, i;
-    x1 = x1 < lists->desc.width_px ? x1 : lists->desc.width_px;
-    y1 = y1 < lists->desc.height_px ? y1 : lists->desc.height_px;
-    for (i = 0u; i < HDRP_I_CULL_RUN; ++i) {
-        nearest[i] = HDRP_FLT_MAX;
-        farthest[i] = -1.0f;
+    if (farthest < 0.0f) { /* sky alone */
+        return hdrp_v4_make(1.0f, -1.0f, lists->grid.series.w, 0.0f);
     }
-    for (y = y0; y < y1; ++y) {
-        for (x = x0; x < x1; x += HDRP_I_CULL_RUN) {
-            uint32_t count = x1 - x < HDRP_I_CULL_RUN ? x1 - x : HDRP_I_CULL_RUN;
+    return hdrp_v4_make(nearest, farthest, hdrp_i_cull_tile_scale(lists, farthest), 0.0f);
+}
+
+/* The ranges of a row of tiles, in which y and z are the pixels of the row. */
+static void hdrp_i_cull_depth_row(hdrp_cull_lists* lists, const hdrp_cull_depth* depth,
+                                  uint32_t row)
+{
+    hdrp_v4* tiles = lists->tiles + (size_t)row * lists->grid.tiles.z;
+    uint32_t y0 = row * lists->grid.tiles.y, y1 = y0 + lists->grid.tiles.y,
+             width = lists->desc.width_px;
+    uint32_t x, y, i, column = 0u;
+    float lo = HDRP_FLT_MAX, hi = -1.0f;
+    y1 = y1 < lists->desc.height_px ? y1 : lists->desc.height_px;
+    for (x = 0u; x < width; x += HDRP_I_CULL_RUN) {
+        uint32_t count = width - x < HDRP_I_CULL_RUN ? width - x : HDRP_I_CULL_RUN;
+        float z[HDRP_I_CULL_RUN], nearest[HDRP_I_CULL_RUN], farthest[HDRP_I_CULL_RUN];
+        for (i = 0u; i < count; ++i) {
+            nearest[i] = HDRP_FLT_MAX;
+            farthest[i] = -1.0f;
+        }
+        for (y = y0; y < y1; ++y) {
             hdrp_i_cull_read(depth, &lists->camera, depth->texels + y * depth->row_stride + x,
                              count, z);
             hdrp_i_cull_widen(z, count, nearest, farthest);
         }
+        for (i = 0u; i < count; ++i) {
+            lo = hdrp_min(nearest[i], lo);
+            hi = hdrp_max(farthest[i], hi);
+            if ((x + i + 1u) % lists->grid.tiles.x == 0u || x + i + 1u == width) {
+                tiles[column++] = hdrp_i_cull_tile_of_range(lists, lo, hi);
+                lo = HDRP_FLT_MAX;
+                hi = -1.0f;
+            }
+        }
     }
-    for (i = 0u; i < HDRP_I_CULL_RUN; ++i) {
-        lo = hdrp_min(nearest[i], lo);
-        hi = hdrp_max(farthest[i], hi);
-    }
-    if (hi < 0.0f) { /* sky alone */
-        return hdrp_v4_make(1.0f, -1.0f, lists->grid.series.w, 0.0f);
-    }
-    return hdrp_v4_make(lo, hi, hdrp_i_cull_tile_scale(lists, hi), 0.0f);
 }
 
 HDRP_API hdrp_result hdrp_cull_measure_depth(hdrp_cull_lists* lists, const hdrp_cull_depth* depth,
                                              uint32_t first_row, uint32_t row_count)
 {
-    uint32_t row, column;
+    uint32_t row;
     if (!lists || !depth || !depth->texels) {
         return HDRP_ERROR_NULL_POINTER;
     }
@@ -832,10 +848,7 @@ HDRP_API hdrp_result hdrp_cull_measure_depth(hdrp_cull_lists* lists, const hdrp_
         return HDRP_ERROR_BAD_ARGUMENT;
     }
     for (row = first_row; row < first_row + row_count; ++row) {
-        for (column = 0u; column < lists->grid.tiles.z; ++column) {
-            lists->tiles[(size_t)row * lists->grid.tiles.z + column] =
-                hdrp_i_cull_tile_depth(lists, depth, column, row);
-        }
+        hdrp_i_cull_depth_row(lists, depth, row);
     }
     return HDRP_OK;
 }
@@ -1039,17 +1052,18 @@ static void hdrp_i_cull_gather(hdrp_i_cull_job* job, uint32_t column)
 static void hdrp_i_cull_test_balls(const hdrp_i_cull_scratch* s, uint32_t count,
                                    hdrp_cull_tile tile, float orthographic)
 {
-    const float* HDRP_I_CULL_RESTRICT x = s->x;
-    const float* HDRP_I_CULL_RESTRICT y = s->y;
-    const float* HDRP_I_CULL_RESTRICT z = s->z;
-    const float* HDRP_I_CULL_RESTRICT radius = s->radius;
-    const float* HDRP_I_CULL_RESTRICT bound_nearest = s->bound_nearest;
-    const float* HDRP_I_CULL_RESTRICT bound_farthest = s->bound_farthest;
-    float* HDRP_I_CULL_RESTRICT nearest = s->nearest;
-    float* HDRP_I_CULL_RESTRICT farthest = s->farthest;
+    const float* x = s->x;
+    const float* y = s->y;
+    const float* z = s->z;
+    const float* radius = s->radius;
+    const float* bound_nearest = s->bound_nearest;
+    const float* bound_farthest = s->bound_farthest;
+    float* nearest = s->nearest;
+    float* farthest = s->farthest;
     uint32_t m;
     /* The constant last argument leaves one loop without the other projection in it. */
     if (orthographic > 0.0f) {
+        HDRP_I_CULL_INDEPENDENT
         for (m = 0u; m < count; ++m) {
             hdrp_cull_interval r =
                 hdrp_cull_interval_ball(tile, hdrp_v4_make(x[m], y[m], z[m], radius[m]), 1.0f);
@@ -1057,6 +1071,7 @@ static void hdrp_i_cull_test_balls(const hdrp_i_cull_scratch* s, uint32_t count,
             farthest[m] = hdrp_min(r.farthest, bound_farthest[m]);
         }
     } else {
+        HDRP_I_CULL_INDEPENDENT
         for (m = 0u; m < count; ++m) {
             hdrp_cull_interval r =
                 hdrp_cull_interval_ball(tile, hdrp_v4_make(x[m], y[m], z[m], radius[m]), 0.0f);
@@ -1070,35 +1085,37 @@ static void hdrp_i_cull_test_balls(const hdrp_i_cull_scratch* s, uint32_t count,
 static void hdrp_i_cull_test_bounds(const hdrp_i_cull_job* job, uint32_t count)
 {
     const hdrp_i_cull_scratch* s = &job->s;
-    const float* HDRP_I_CULL_RESTRICT left = s->left;
-    const float* HDRP_I_CULL_RESTRICT upper = s->upper;
-    const float* HDRP_I_CULL_RESTRICT right = s->right;
-    const float* HDRP_I_CULL_RESTRICT lower = s->lower;
-    const float* HDRP_I_CULL_RESTRICT bound_nearest = s->bound_nearest;
-    const float* HDRP_I_CULL_RESTRICT bound_farthest = s->bound_farthest;
-    float* HDRP_I_CULL_RESTRICT nearest = s->nearest;
-    float* HDRP_I_CULL_RESTRICT farthest = s->farthest;
+    const float* left = s->left;
+    const float* upper = s->upper;
+    const float* right = s->right;
+    const float* lower = s->lower;
+    const float* bound_nearest = s->bound_nearest;
+    const float* bound_farthest = s->bound_farthest;
+    float* nearest = s->nearest;
+    float* farthest = s->farthest;
     float x0 = (float)job->x0, y0 = (float)job->y0, x1 = (float)job->x1, y1 = (float)job->y1;
     uint32_t m;
+    HDRP_I_CULL_INDEPENDENT
     for (m = 0u; m < count; ++m) {
-        float in_x = left[m] <= x1 && right[m] >= x0 ? 1.0f : 0.0f;
-        float inside = upper[m] <= y1 && lower[m] >= y0 ? in_x : 0.0f;
+        float l = left[m], u = upper[m], r = right[m], b = lower[m];
+        float in_x = l <= x1 && r >= x0 ? 1.0f : 0.0f;
+        float inside = u <= y1 && b >= y0 ? in_x : 0.0f;
         nearest[m] = inside > 0.0f ? bound_nearest[m] : HDRP_FLT_MAX;
         farthest[m] = bound_farthest[m];
     }
 }
 
 static void hdrp_i_cull_test_plane(const hdrp_i_cull_scratch* s, size_t at, uint32_t count,
-                                   hdrp_cull_tile tile, float orthographic,
-                                   float* HDRP_I_CULL_RESTRICT nearest,
-                                   float* HDRP_I_CULL_RESTRICT farthest)
+                                   hdrp_cull_tile tile, float orthographic, float* nearest,
+                                   float* farthest)
 {
-    const float* HDRP_I_CULL_RESTRICT x = s->plane[0] + at;
-    const float* HDRP_I_CULL_RESTRICT y = s->plane[1] + at;
-    const float* HDRP_I_CULL_RESTRICT z = s->plane[2] + at;
-    const float* HDRP_I_CULL_RESTRICT w = s->plane[3] + at;
+    const float* x = s->plane[0] + at;
+    const float* y = s->plane[1] + at;
+    const float* z = s->plane[2] + at;
+    const float* w = s->plane[3] + at;
     uint32_t p;
     if (orthographic > 0.0f) {
+        HDRP_I_CULL_INDEPENDENT
         for (p = 0u; p < count; ++p) {
             hdrp_cull_interval r;
             r.nearest = nearest[p];
@@ -1108,6 +1125,7 @@ static void hdrp_i_cull_test_plane(const hdrp_i_cull_scratch* s, size_t at, uint
             farthest[p] = r.farthest;
         }
     } else {
+        HDRP_I_CULL_INDEPENDENT
         for (p = 0u; p < count; ++p) {
             hdrp_cull_interval r;
             r.nearest = nearest[p];
@@ -1222,19 +1240,41 @@ static void hdrp_i_cull_read_pixels(hdrp_i_cull_job* job)
     job->block_begin[16] = n;
 }
 
-/* Whether a shape reaches one of some pixels. */
-static uint32_t hdrp_i_cull_reaches(const hdrp_i_cull_scratch* s, hdrp_cull_shape shape,
-                                    uint32_t first, uint32_t end)
+/* Whether a shape of a kind reaches one of some pixels. A constant kind leaves a loop without the
+ * other ones in it. */
+HDRP_FN uint32_t hdrp_i_cull_reaches_kind(const hdrp_i_cull_scratch* s, hdrp_cull_shape shape,
+                                          hdrp_u32 kind, uint32_t first, uint32_t end)
 {
-    const float* HDRP_I_CULL_RESTRICT x = s->pixel_x;
-    const float* HDRP_I_CULL_RESTRICT y = s->pixel_y;
-    const float* HDRP_I_CULL_RESTRICT z = s->pixel_z;
+    const float* x = s->pixel_x;
+    const float* y = s->pixel_y;
+    const float* z = s->pixel_z;
     uint32_t reached = 0u, i;
+    shape.bits.x = kind;
+    HDRP_I_CULL_INDEPENDENT
     for (i = first; i < end; ++i) {
         float in = hdrp_cull_shape_contains(shape, hdrp_v3_make(x[i], y[i], z[i]));
         reached |= in > 0.0f ? 1u : 0u;
     }
     return reached;
+}
+
+static uint32_t hdrp_i_cull_reaches(const hdrp_i_cull_scratch* s, const hdrp_cull_shape* shape,
+                                    uint32_t first, uint32_t end)
+{
+    switch (hdrp_cull_shape_kind(*shape)) {
+    case HDRP_CULL_KIND_BALL:
+        return hdrp_i_cull_reaches_kind(s, *shape, HDRP_CULL_KIND_BALL, first, end);
+    case HDRP_CULL_KIND_CONE:
+        return hdrp_i_cull_reaches_kind(s, *shape, HDRP_CULL_KIND_CONE, first, end);
+    case HDRP_CULL_KIND_PYRAMID:
+        return hdrp_i_cull_reaches_kind(s, *shape, HDRP_CULL_KIND_PYRAMID, first, end);
+    case HDRP_CULL_KIND_BOX:
+        return hdrp_i_cull_reaches_kind(s, *shape, HDRP_CULL_KIND_BOX, first, end);
+    case HDRP_CULL_KIND_FRONT:
+        return hdrp_i_cull_reaches_kind(s, *shape, HDRP_CULL_KIND_FRONT, first, end);
+    default:
+        return 0u;
+    }
 }
 
 /* Marks which sixteenths each hit reaches, or with the other flag alone whether it reaches any. */
@@ -1245,7 +1285,7 @@ static void hdrp_i_cull_test_pixels(hdrp_i_cull_job* job)
     uint32_t h, block;
     hdrp_i_cull_read_pixels(job);
     for (h = 0u; h < job->hit_count; ++h) {
-        hdrp_cull_shape shape = job->set->shapes[s->candidate[s->hit[h]]];
+        const hdrp_cull_shape* shape = &job->set->shapes[s->candidate[s->hit[h]]];
         uint32_t reached = 0u;
         for (block = 0u; block < 16u && (all || reached == 0u); ++block) {
             reached |=
@@ -1336,12 +1376,13 @@ static uint32_t hdrp_i_cull_limit(hdrp_i_cull_job* job)
 /* The slices of each hit. */
 static void hdrp_i_cull_slices(hdrp_i_cull_job* job, float scale)
 {
-    const float* HDRP_I_CULL_RESTRICT nearest = job->s.hit_nearest;
-    const float* HDRP_I_CULL_RESTRICT farthest = job->s.hit_farthest;
-    uint8_t* HDRP_I_CULL_RESTRICT first = job->s.hit_first;
-    uint8_t* HDRP_I_CULL_RESTRICT last = job->s.hit_last;
+    const float* nearest = job->s.hit_nearest;
+    const float* farthest = job->s.hit_farthest;
+    uint8_t* first = job->s.hit_first;
+    uint8_t* last = job->s.hit_last;
     hdrp_cull_grid grid = job->lists->grid;
     uint32_t h;
+    HDRP_I_CULL_INDEPENDENT
     for (h = 0u; h < job->hit_count; ++h) {
         first[h] = (uint8_t)hdrp_cull_slice(grid, scale, nearest[h]);
         last[h] = (uint8_t)hdrp_cull_slice(grid, scale, farthest[h]);
@@ -1554,6 +1595,6 @@ HDRP_API hdrp_result hdrp_cull_masks(const hdrp_cull_lists* lists, uint32_t firs
 #pragma GCC pop_options
 #endif
 
-#undef HDRP_I_CULL_RESTRICT
+#undef HDRP_I_CULL_INDEPENDENT
 
 #endif /* HDRP_CULL_IMPLEMENTATION */

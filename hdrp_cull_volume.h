@@ -730,10 +730,12 @@ HDRP_FN float hdrp_i_cull_in_cone(hdrp_cull_shape s, hdrp_v3 d, float margin)
     hdrp_v3 f = hdrp_v3_from_v4(s.forward_half);
     hdrp_v3 c = hdrp_i_cull_cross(d, f);
     float across2 = hdrp_i_cull_dot(c, c) * (s.half_angle.x * s.half_angle.x);
-    float along = hdrp_i_cull_dot(d, f) * s.half_angle.y;
-    float inside = across2 <= hdrp_sq(along + margin) && along + margin >= 0.0f ? 1.0f : 0.0f;
-    float outside = across2 < hdrp_sq(along + margin) && along + margin < 0.0f ? 1.0f : 0.0f;
-    return s.half_angle.x >= 0.0f ? inside : 1.0f - outside;
+    float along = hdrp_i_cull_dot(d, f) * s.half_angle.y + margin;
+    float front = along >= 0.0f ? 1.0f : 0.0f;
+    /* Less than half a sphere is near the axis, in front; more is not near it, behind. */
+    float narrow = across2 <= along * along ? front : 0.0f;
+    float wide = across2 >= along * along ? 1.0f : front;
+    return s.half_angle.x >= 0.0f ? narrow : wide;
 }
 
 /** Whether a shape reaches a position.
@@ -920,16 +922,15 @@ HDRP_FN hdrp_cull_interval hdrp_cull_interval_ball(hdrp_cull_tile tile, hdrp_v4 
     return r;
 }
 
-/* The part of an interval where the tile reaches dot(n, p) <= d; slope is the least dot(n, p) / z in
- * the tile, in the orthographic case n.z, and d is less by the least of the rest. */
-HDRP_FN hdrp_cull_interval hdrp_i_cull_clip(hdrp_cull_interval r, float slope, float d, float empty)
+/* The part of an interval where z * slope <= d. */
+HDRP_FN hdrp_cull_interval hdrp_i_cull_clip(hdrp_cull_interval r, float slope, float d)
 {
-    float z = d / (slope == 0.0f ? 1.0f : slope);
-    float farther = z + HDRP_CULL_MARGIN * hdrp_abs(z);
-    float nearer = z - HDRP_CULL_MARGIN * hdrp_abs(z);
-    r.farthest = slope > 0.0f ? hdrp_min(farther, r.farthest) : r.farthest;
-    r.nearest = slope < 0.0f ? hdrp_max(nearer, r.nearest) : r.nearest;
-    r.nearest = empty > 0.0f ? HDRP_I_CULL_EMPTY : r.nearest;
+    float z = d / (slope == 0.0f ? 1e-20f : slope);
+    float margin = HDRP_CULL_MARGIN * hdrp_abs(z);
+    float end = slope >= 0.0f ? z + margin : HDRP_I_CULL_EMPTY;
+    float begin = slope < 0.0f ? z - margin : -HDRP_I_CULL_EMPTY;
+    r.farthest = hdrp_min(end, r.farthest);
+    r.nearest = hdrp_max(begin, r.nearest);
     return r;
 }
 
@@ -938,7 +939,8 @@ HDRP_FN hdrp_cull_interval hdrp_i_cull_clip(hdrp_cull_interval r, float slope, f
  *  tile          valid
  *  plane         any     xyz normal, w offset: hdrp_cull_shape_plane
  *  orthographic  [0,1]   1 for an orthographic camera
- *  returns       any     nearest > farthest where nothing is left
+ *  returns       any     nothing is left in front of the camera where nearest > farthest or
+ *                farthest < 0
  *  edges         a normal of 0 with w > 0 changes nothing
  *  error         none: encloses; the plane counts as 1e-6 farther out, in angle and in depth
  *  source        derived: at a depth z the least dot(n, p) in the tile is z times a constant */
@@ -951,15 +953,11 @@ HDRP_FN hdrp_cull_interval hdrp_cull_interval_plane(hdrp_cull_interval interval,
     float size = hdrp_abs(plane.x) * tile.extent.x + hdrp_abs(plane.y) * tile.extent.y;
     float slope = least + plane.z - HDRP_CULL_MARGIN * (size + hdrp_abs(plane.z));
     float d = plane.w;
-    /* Through the eye, behind which nothing is seen, a plane limits one end only. */
-    float empty = d < 0.0f && slope >= 0.0f ? 1.0f : 0.0f;
-    float limits = (d >= 0.0f && slope > 0.0f) || d < 0.0f ? slope : 0.0f;
     if (orthographic > 0.0f) {
         d = plane.w - least + HDRP_CULL_MARGIN * size;
-        limits = plane.z;
-        empty = plane.z == 0.0f && d < 0.0f ? 1.0f : 0.0f;
+        slope = plane.z;
     }
-    return hdrp_i_cull_clip(interval, limits, d, empty);
+    return hdrp_i_cull_clip(interval, slope, d);
 }
 
 /* >>screen bounds */
