@@ -56,7 +56,7 @@ mutation: ## make constants and operators wrong, one by one, and count what the 
 	@$(call configure,test,-DCMAKE_BUILD_TYPE=Release)
 	@$(call compile,test) --target mutation
 
-bench: ## time the formulas beside other libraries; results go to bench/results
+bench: ## time the formulas beside other libraries, and light culling; results go to bench/results
 	@mkdir -p build
 	@tools/install-deps bench
 	@$(call configure,bench,-DCMAKE_BUILD_TYPE=Release -DHDRP_BUILD_BENCH=ON -DHDRP_BUILD_TESTS=OFF)

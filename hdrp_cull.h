@@ -874,7 +874,8 @@ typedef struct hdrp_i_cull_scratch {
     uint16_t* keep;   /* of a hit: 0 where there is no room */
     uint8_t *hit_first, *hit_last;
     uint64_t* order;                    /* hits by importance */
-    float *pixel_x, *pixel_y, *pixel_z; /* of a tile, block by block */
+    float *pixel_x, *pixel_y, *pixel_z; /* of a tile */
+    uint32_t* reached;                  /* 1 for a pixel of a band that a shape reaches */
     uint32_t capacity;
 } hdrp_i_cull_scratch;
 
@@ -888,8 +889,7 @@ typedef struct hdrp_i_cull_job {
     uint32_t candidate_end[HDRP_CULL_CATEGORY_COUNT]; /* of each category */
     uint32_t candidate_count, planar_count, hit_count;
     uint32_t hit_end[HDRP_CULL_CATEGORY_COUNT];
-    uint32_t block_begin[17]; /* in the pixels of a tile */
-    uint32_t x0, y0, x1, y1;  /* of the tile, in px */
+    uint32_t x0, y0, x1, y1; /* of the tile, in px */
 } hdrp_i_cull_job;
 
 /* Tiles of a coarse cell along one side. */
@@ -939,6 +939,7 @@ static size_t hdrp_i_cull_place_scratch(hdrp_i_cull_scratch* s, const hdrp_cull_
     s->pixel_x = hdrp_i_cull_floats(&a, pixels);
     s->pixel_y = hdrp_i_cull_floats(&a, pixels);
     s->pixel_z = hdrp_i_cull_floats(&a, pixels);
+    s->reached = (uint32_t*)hdrp_i_cull_take(&a, pixels, sizeof(uint32_t));
     return a.used;
 }
 
@@ -1202,97 +1203,159 @@ static void hdrp_i_cull_keep(hdrp_i_cull_job* job, const uint16_t* keep)
 
 /* ---- pixels ---------------------------------------------------------------------------------- */
 
-/* Where the surfaces of a tile are, sixteenth by sixteenth; without those of sky. */
+/* Where the surfaces of a tile are, row by row; depth is negative where there is only sky. */
 static void hdrp_i_cull_read_pixels(hdrp_i_cull_job* job)
 {
     const hdrp_cull_lists* lists = job->lists;
-    hdrp_i_cull_scratch* s = &job->s;
     hdrp_v4 window = lists->camera.window;
     float du = window.z / (float)lists->desc.width_px;
     float dv = window.w / (float)lists->desc.height_px;
-    int flat = lists->camera.forward_orthographic.w > 0.0f;
-    uint32_t n = 0u, block, x, y, i;
-    for (block = 0u; block < 16u; ++block) {
-        uint32_t x0 = job->x0 + block % 4u * lists->grid.cells.z;
-        uint32_t y0 = job->y0 + block / 4u * lists->grid.cells.w;
-        uint32_t x1 = x0 + lists->grid.cells.z, y1 = y0 + lists->grid.cells.w;
-        x1 = x1 < job->x1 ? x1 : job->x1;
-        y1 = y1 < job->y1 ? y1 : job->y1;
-        job->block_begin[block] = n;
-        for (y = y0; y < y1; ++y) {
-            for (x = x0; x < x1; x += HDRP_I_CULL_RUN) {
-                uint32_t count = x1 - x < HDRP_I_CULL_RUN ? x1 - x : HDRP_I_CULL_RUN;
-                float z[HDRP_I_CULL_RUN];
-                float v = window.y + ((float)(lists->desc.height_px - y) - 0.5f) * dv;
-                hdrp_i_cull_read(job->depth, &lists->camera,
-                                 job->depth->texels + y * job->depth->row_stride + x, count, z);
-                for (i = 0u; i < count; ++i) {
-                    float u = window.x + ((float)(x + i) + 0.5f) * du;
-                    float k = flat ? 1.0f : z[i];
-                    s->pixel_x[n] = u * k;
-                    s->pixel_y[n] = v * k;
-                    s->pixel_z[n] = z[i];
-                    n += z[i] >= 0.0f ? 1u : 0u;
-                }
-            }
+    float flat = lists->camera.forward_orthographic.w;
+    uint32_t width = job->x1 - job->x0, x, y, i;
+    for (y = job->y0; y < job->y1; ++y) {
+        const float* texels = job->depth->texels + y * job->depth->row_stride + job->x0;
+        float v = window.y + ((float)(lists->desc.height_px - y) - 0.5f) * dv;
+        float* pixel_x = job->s.pixel_x + (size_t)(y - job->y0) * width;
+        float* pixel_y = job->s.pixel_y + (size_t)(y - job->y0) * width;
+        float* pixel_z = job->s.pixel_z + (size_t)(y - job->y0) * width;
+        for (x = 0u; x < width; x += HDRP_I_CULL_RUN) {
+            uint32_t count = width - x < HDRP_I_CULL_RUN ? width - x : HDRP_I_CULL_RUN;
+            hdrp_i_cull_read(job->depth, &lists->camera, texels + x, count, pixel_z + x);
+        }
+        HDRP_I_CULL_INDEPENDENT
+        for (i = 0u; i < width; ++i) {
+            float k = flat > 0.0f ? 1.0f : pixel_z[i];
+            pixel_x[i] = (window.x + ((float)(int)(job->x0 + i) + 0.5f) * du) * k;
+            pixel_y[i] = v * k;
         }
     }
-    job->block_begin[16] = n;
 }
 
-/* Whether a shape of a kind reaches one of some pixels. A constant kind leaves a loop without the
+/* Notes which of some pixels a shape of a kind reaches. A constant kind leaves a loop without the
  * other ones in it. */
-HDRP_FN uint32_t hdrp_i_cull_reaches_kind(const hdrp_i_cull_scratch* s, hdrp_cull_shape shape,
-                                          hdrp_u32 kind, uint32_t first, uint32_t end)
+HDRP_FN void hdrp_i_cull_reach_kind(const hdrp_i_cull_scratch* s, hdrp_cull_shape shape,
+                                    hdrp_u32 kind, uint32_t first, uint32_t count)
 {
-    const float* x = s->pixel_x;
-    const float* y = s->pixel_y;
-    const float* z = s->pixel_z;
-    uint32_t reached = 0u, i;
+    const float* x = s->pixel_x + first;
+    const float* y = s->pixel_y + first;
+    const float* z = s->pixel_z + first;
+    uint32_t* reached = s->reached;
+    uint32_t i;
     shape.bits.x = kind;
     HDRP_I_CULL_INDEPENDENT
-    for (i = first; i < end; ++i) {
+    for (i = 0u; i < count; ++i) {
         float in = hdrp_cull_shape_contains(shape, hdrp_v3_make(x[i], y[i], z[i]));
-        reached |= in > 0.0f ? 1u : 0u;
+        float seen = z[i] >= 0.0f ? in : 0.0f;
+        reached[i] = seen > 0.0f ? 1u : 0u;
     }
-    return reached;
 }
 
-static uint32_t hdrp_i_cull_reaches(const hdrp_i_cull_scratch* s, const hdrp_cull_shape* shape,
-                                    uint32_t first, uint32_t end)
+static void hdrp_i_cull_reach(const hdrp_i_cull_scratch* s, const hdrp_cull_shape* shape,
+                              uint32_t first, uint32_t count)
 {
     switch (hdrp_cull_shape_kind(*shape)) {
     case HDRP_CULL_KIND_BALL:
-        return hdrp_i_cull_reaches_kind(s, *shape, HDRP_CULL_KIND_BALL, first, end);
+        hdrp_i_cull_reach_kind(s, *shape, HDRP_CULL_KIND_BALL, first, count);
+        break;
     case HDRP_CULL_KIND_CONE:
-        return hdrp_i_cull_reaches_kind(s, *shape, HDRP_CULL_KIND_CONE, first, end);
+        hdrp_i_cull_reach_kind(s, *shape, HDRP_CULL_KIND_CONE, first, count);
+        break;
     case HDRP_CULL_KIND_PYRAMID:
-        return hdrp_i_cull_reaches_kind(s, *shape, HDRP_CULL_KIND_PYRAMID, first, end);
+        hdrp_i_cull_reach_kind(s, *shape, HDRP_CULL_KIND_PYRAMID, first, count);
+        break;
     case HDRP_CULL_KIND_BOX:
-        return hdrp_i_cull_reaches_kind(s, *shape, HDRP_CULL_KIND_BOX, first, end);
-    case HDRP_CULL_KIND_FRONT:
-        return hdrp_i_cull_reaches_kind(s, *shape, HDRP_CULL_KIND_FRONT, first, end);
+        hdrp_i_cull_reach_kind(s, *shape, HDRP_CULL_KIND_BOX, first, count);
+        break;
     default:
-        return 0u;
+        hdrp_i_cull_reach_kind(s, *shape, HDRP_CULL_KIND_FRONT, first, count);
+        break;
     }
 }
 
-/* Marks which sixteenths each hit reaches, or with the other flag alone whether it reaches any. */
-static void hdrp_i_cull_test_pixels(hdrp_i_cull_job* job)
+/* Which of the four blocks across a band of rows have a pixel that was reached. */
+static uint32_t hdrp_i_cull_blocks_of_band(const hdrp_i_cull_job* job, uint32_t rows)
+{
+    uint32_t* reached = job->s.reached;
+    uint32_t width = job->x1 - job->x0, block_width = job->lists->grid.cells.z;
+    uint32_t bits = 0u, row, x;
+    for (row = 1u; row < rows; ++row) {
+        for (x = 0u; x < width; ++x) {
+            reached[x] |= reached[(size_t)row * width + x];
+        }
+    }
+    for (x = 0u; x < width; ++x) {
+        bits |= reached[x] << (x / block_width);
+    }
+    return bits;
+}
+
+/* Which sixteenths of a tile a shape reaches; without HDRP_CULL_BLOCKS all where it reaches one. */
+static uint32_t hdrp_i_cull_blocks_reached(const hdrp_i_cull_job* job, const hdrp_cull_shape* shape)
+{
+    uint32_t width = job->x1 - job->x0, height = job->y1 - job->y0;
+    uint32_t band_height = job->lists->grid.cells.w, bits = 0u, band;
+    int all = (job->lists->desc.flags & HDRP_CULL_BLOCKS) != 0u;
+    for (band = 0u; band * band_height < height && (all || bits == 0u); ++band) {
+        uint32_t row = band * band_height;
+        uint32_t rows = height - row < band_height ? height - row : band_height;
+        hdrp_i_cull_reach(&job->s, shape, row * width, rows * width);
+        bits |= hdrp_i_cull_blocks_of_band(job, rows) << (4u * band);
+    }
+    return all || bits == 0u ? bits : 0xffffu;
+}
+
+/* The box around the surfaces of a tile. */
+typedef struct hdrp_i_cull_box {
+    hdrp_v3 lo, hi;
+} hdrp_i_cull_box;
+
+static hdrp_i_cull_box hdrp_i_cull_box_of_tile(hdrp_cull_tile tile, hdrp_v4 info,
+                                               float orthographic)
+{
+    hdrp_i_cull_box b;
+    float k0 = orthographic > 0.0f ? 1.0f : info.x, k1 = orthographic > 0.0f ? 1.0f : info.y;
+    hdrp_v4 w = tile.window;
+    b.lo = hdrp_v3_make(hdrp_min(w.x * k0, w.x * k1), hdrp_min(w.z * k0, w.z * k1), info.x);
+    b.hi = hdrp_v3_make(hdrp_max(w.y * k0, w.y * k1), hdrp_max(w.w * k0, w.w * k1), info.y);
+    return b;
+}
+
+/* Whether a shape, which is convex, contains the corners of a box. */
+static int hdrp_i_cull_contains_box(const hdrp_cull_shape* shape, const hdrp_i_cull_box* b)
+{
+    uint32_t i;
+    if (shape->half_angle.x < 0.0f && hdrp_cull_shape_kind(*shape) == HDRP_CULL_KIND_CONE) {
+        return 0; /* not convex */
+    }
+    for (i = 0u; i < 8u; ++i) {
+        hdrp_v3 corner = hdrp_v3_make(i & 1u ? b->hi.x : b->lo.x, i & 2u ? b->hi.y : b->lo.y,
+                                      i & 4u ? b->hi.z : b->lo.z);
+        if (hdrp_cull_shape_contains(*shape, corner) <= 0.0f) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* Marks which sixteenths each hit reaches, and drops those that reach none. Pixels are looked at
+ * only where a hit does not contain the whole of what the tile shows. */
+static void hdrp_i_cull_test_pixels(hdrp_i_cull_job* job, hdrp_cull_tile tile, hdrp_v4 info)
 {
     hdrp_i_cull_scratch* s = &job->s;
-    int all = (job->lists->desc.flags & HDRP_CULL_BLOCKS) != 0u;
-    uint32_t h, block;
-    hdrp_i_cull_read_pixels(job);
+    hdrp_i_cull_box box =
+        hdrp_i_cull_box_of_tile(tile, info, job->lists->camera.forward_orthographic.w);
+    int read = 0;
+    uint32_t h;
     for (h = 0u; h < job->hit_count; ++h) {
         const hdrp_cull_shape* shape = &job->set->shapes[s->candidate[s->hit[h]]];
-        uint32_t reached = 0u;
-        for (block = 0u; block < 16u && (all || reached == 0u); ++block) {
-            reached |=
-                hdrp_i_cull_reaches(s, shape, job->block_begin[block], job->block_begin[block + 1u])
-                << block;
+        if (hdrp_i_cull_contains_box(shape, &box)) {
+            continue;
         }
-        s->blocks[h] = (uint16_t)(all || reached == 0u ? reached : 0xffffu);
+        if (!read) {
+            hdrp_i_cull_read_pixels(job);
+            read = 1;
+        }
+        s->blocks[h] = (uint16_t)hdrp_i_cull_blocks_reached(job, shape);
     }
     hdrp_i_cull_keep(job, s->blocks);
 }
@@ -1449,6 +1512,7 @@ static void hdrp_i_cull_build_tile(hdrp_i_cull_job* job, uint32_t column, uint32
     hdrp_v4 info = lists->tiles[tile];
     float orthographic = lists->camera.forward_orthographic.w;
     float lo = lists->camera.eye_near.w, hi = lists->camera.right_far.w;
+    hdrp_cull_tile t;
     job->x0 = column * size.x;
     job->y0 = row * size.y;
     job->x1 = job->x0 + size.x < lists->desc.width_px ? job->x0 + size.x : lists->desc.width_px;
@@ -1457,12 +1521,12 @@ static void hdrp_i_cull_build_tile(hdrp_i_cull_job* job, uint32_t column, uint32
         lo = info.x; /* nothing is between them where there is only sky */
         hi = info.y;
     }
+    t = hdrp_cull_tile_make(lists->camera, (float)job->x0, (float)job->y0, (float)job->x1,
+                            (float)job->y1, (float)lists->desc.width_px,
+                            (float)lists->desc.height_px);
     if (lists->desc.flags & HDRP_CULL_FAST) {
         hdrp_i_cull_test_bounds(job, job->candidate_count);
     } else {
-        hdrp_cull_tile t = hdrp_cull_tile_make(
-            lists->camera, (float)job->x0, (float)job->y0, (float)job->x1, (float)job->y1,
-            (float)lists->desc.width_px, (float)lists->desc.height_px);
         hdrp_i_cull_test_balls(&job->s, job->candidate_count, t, orthographic);
         hdrp_i_cull_test_planes(job, t, orthographic);
     }
@@ -1472,7 +1536,7 @@ static void hdrp_i_cull_build_tile(hdrp_i_cull_job* job, uint32_t column, uint32
         job->s.blocks[h] = 0xffffu;
     }
     if (lists->desc.flags & HDRP_CULL_PIXELS) {
-        hdrp_i_cull_test_pixels(job);
+        hdrp_i_cull_test_pixels(job, t, info);
     }
     hdrp_i_cull_write(job, tile, hdrp_i_cull_limit(job));
 }

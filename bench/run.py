@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Runs bench_cpu and keeps its results by the name of the processor: run.py BENCH_CPU FOLDER"""
+"""Runs both programs and keeps their results by the name of the processor:
+run.py BENCH_CPU BENCH_CULL FOLDER"""
 import pathlib
 import re
 import subprocess
@@ -25,18 +26,25 @@ def remark(text):
     return f"# {model()}, gcc {versions[0]}, clang {versions[1]}: {text}\n"
 
 
-def main():
-    program, folder = sys.argv[1], pathlib.Path(sys.argv[2])
-    folder.mkdir(exist_ok=True)
-    name = machine()
-    cpu, features = folder / f"cpu_{name}.csv", folder / f"features_cpu_{name}.csv"
-    done = subprocess.run([program, "--csv", cpu, "--features-csv", features])
-    if done.returncode == 0:
-        for path in (cpu, features):
+def run(program, results):
+    """Runs a program that writes results, a file for each of its options."""
+    command = [program, *(word for option, path in results.items() for word in (option, path))]
+    status = subprocess.run(command).returncode
+    if status == 0:
+        for path in results.values():
             path.write_text(remark("one pinned core, medians; flags in bench/README.md") +
                             path.read_text())
-        print(f"wrote {cpu} and {features}")
-    return done.returncode
+            print(f"wrote {path}")
+    return status
+
+
+def main():
+    bench_cpu, bench_cull, folder = sys.argv[1], sys.argv[2], pathlib.Path(sys.argv[3])
+    folder.mkdir(exist_ok=True)
+    name = machine()
+    return (run(bench_cpu, {"--csv": folder / f"cpu_{name}.csv",
+                            "--features-csv": folder / f"features_cpu_{name}.csv"}) or
+            run(bench_cull, {"--csv": folder / f"cull_cpu_{name}.csv"}))
 
 
 if __name__ == "__main__":
