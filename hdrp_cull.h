@@ -754,29 +754,33 @@ HDRP_API hdrp_result hdrp_cull_begin(hdrp_cull_lists* lists, const hdrp_cull_set
 
 /* ---- depth ----------------------------------------------------------------------------------- */
 
-/* Depths of a run of up to HDRP_I_CULL_RUN pixels, with sky, NaN and what is in front of the near
- * plane as -1. */
+/* Pixels of a row that are read together. */
 #define HDRP_I_CULL_RUN 64u
+
+/* A depth in front of the camera; -1 for sky, NaN and what is behind. */
+HDRP_FN float hdrp_i_cull_seen(float z, float near_m, float far_m)
+{
+    float seen = z < near_m ? near_m : z;
+    float here = z < far_m ? seen : -1.0f;
+    return z >= 0.0f ? here : -1.0f;
+}
+
 static void hdrp_i_cull_read(const hdrp_cull_depth* depth, const hdrp_cull_camera* camera,
                              const float* texels, uint32_t count, float* z)
 {
     float near_m = camera->eye_near.w, far_m = camera->right_far.w;
     uint32_t i;
-    HDRP_I_CULL_INDEPENDENT
-    for (i = 0u; i < count; ++i) {
-        z[i] = texels[i];
-    }
     if (depth->device) {
         hdrp_depth_params device = *depth->device;
         HDRP_I_CULL_INDEPENDENT
         for (i = 0u; i < count; ++i) {
-            z[i] = hdrp_view_depth(device, z[i]);
+            z[i] = hdrp_i_cull_seen(hdrp_view_depth(device, texels[i]), near_m, far_m);
         }
-    }
-    HDRP_I_CULL_INDEPENDENT
-    for (i = 0u; i < count; ++i) {
-        float seen = z[i] < near_m ? near_m : z[i];
-        z[i] = z[i] >= 0.0f && z[i] < far_m ? seen : -1.0f;
+    } else {
+        HDRP_I_CULL_INDEPENDENT
+        for (i = 0u; i < count; ++i) {
+            z[i] = hdrp_i_cull_seen(texels[i], near_m, far_m);
+        }
     }
 }
 
@@ -1452,35 +1456,30 @@ static void hdrp_i_cull_slices(hdrp_i_cull_job* job, float scale)
     }
 }
 
-/* How many hits of each category begin, and end, in each slice, summed up to those that are there. */
-static void
-hdrp_i_cull_count_slices(const hdrp_i_cull_job* job,
-                         uint32_t counts[HDRP_CULL_CATEGORY_COUNT][HDRP_CULL_SLICES_MAX])
+/* How many hits of the four categories are in each slice, 16 bits each. First what each slice has
+ * more than the one before it; sums of whole words are sums of their parts, whatever they borrow. */
+static void hdrp_i_cull_count_slices(const hdrp_i_cull_job* job, uint64_t* counts)
 {
-    uint32_t slices = job->lists->desc.slice_count;
-    uint32_t category, h = 0u, k, sum;
+    uint32_t slices = job->lists->desc.slice_count, category, h = 0u, k;
+    uint64_t sum = 0u;
+    memset(counts, 0, (slices + 1u) * sizeof *counts);
     for (category = 0u; category < HDRP_CULL_CATEGORY_COUNT; ++category) {
-        memset(counts[category], 0, slices * sizeof counts[category][0]);
-        if (h == job->hit_end[category]) {
-            continue;
-        }
+        uint64_t one = (uint64_t)1u << (16u * category);
         for (; h < job->hit_end[category]; ++h) {
-            counts[category][job->s.hit_first[h]] += 1u;
-            if (job->s.hit_last[h] + 1u < slices) {
-                counts[category][job->s.hit_last[h] + 1u] -= 1u;
-            }
+            counts[job->s.hit_first[h]] += one;
+            counts[job->s.hit_last[h] + 1u] -= one;
         }
-        for (k = 0u, sum = 0u; k < slices; ++k) {
-            sum += counts[category][k];
-            counts[category][k] = sum;
-        }
+    }
+    for (k = 0u; k < slices; ++k) {
+        sum += counts[k];
+        counts[k] = sum;
     }
 }
 
 /* Writes the cells and the entries of a tile. */
 static void hdrp_i_cull_write(hdrp_i_cull_job* job, uint32_t tile, uint32_t dropped)
 {
-    uint32_t counts[HDRP_CULL_CATEGORY_COUNT][HDRP_CULL_SLICES_MAX];
+    uint64_t counts[HDRP_CULL_SLICES_MAX + 1u];
     uint32_t next[HDRP_CULL_SLICES_MAX];
     hdrp_cull_lists* lists = job->lists;
     uint32_t slices = lists->desc.slice_count, at = tile * lists->desc.entry_capacity, k, h;
@@ -1488,10 +1487,10 @@ static void hdrp_i_cull_write(hdrp_i_cull_job* job, uint32_t tile, uint32_t drop
     uint32_t* entries = lists->entries;
     hdrp_i_cull_count_slices(job, counts);
     for (k = 0u; k < slices; ++k) {
-        cells[k] = hdrp_u32x4_make(at, counts[0][k] | counts[1][k] << 16,
-                                   counts[2][k] | counts[3][k] << 16, dropped);
+        cells[k] = hdrp_u32x4_make(at, (uint32_t)counts[k], (uint32_t)(counts[k] >> 32), dropped);
         next[k] = at;
-        at += counts[0][k] + counts[1][k] + counts[2][k] + counts[3][k];
+        /* The highest part of the product is the sum of the four. */
+        at += (uint32_t)(counts[k] * 0x0001000100010001u >> 48);
     }
     for (h = 0u; h < job->hit_count; ++h) {
         uint32_t entry = (uint32_t)job->s.candidate[job->s.hit[h]] | (uint32_t)job->s.blocks[h]
@@ -1504,32 +1503,49 @@ static void hdrp_i_cull_write(hdrp_i_cull_job* job, uint32_t tile, uint32_t drop
     lists->tile_dropped[tile] = dropped;
 }
 
-static void hdrp_i_cull_build_tile(hdrp_i_cull_job* job, uint32_t column, uint32_t row)
+/* The rectangle of pixels of a tile, or of several. */
+static void hdrp_i_cull_set_rectangle(hdrp_i_cull_job* job, uint32_t column, uint32_t row,
+                                      uint32_t columns, uint32_t rows)
 {
-    hdrp_cull_lists* lists = job->lists;
-    hdrp_u32x4 size = lists->grid.tiles;
-    uint32_t tile = row * size.z + column, h;
-    hdrp_v4 info = lists->tiles[tile];
+    const hdrp_cull_lists* lists = job->lists;
+    uint32_t x1 = (column + columns) * lists->grid.tiles.x, y1 = (row + rows) * lists->grid.tiles.y;
+    job->x0 = column * lists->grid.tiles.x;
+    job->y0 = row * lists->grid.tiles.y;
+    job->x1 = x1 < lists->desc.width_px ? x1 : lists->desc.width_px;
+    job->y1 = y1 < lists->desc.height_px ? y1 : lists->desc.height_px;
+}
+
+/* The intervals of all candidates in the rectangle. */
+static hdrp_cull_tile hdrp_i_cull_test(hdrp_i_cull_job* job)
+{
+    const hdrp_cull_lists* lists = job->lists;
     float orthographic = lists->camera.forward_orthographic.w;
-    float lo = lists->camera.eye_near.w, hi = lists->camera.right_far.w;
-    hdrp_cull_tile t;
-    job->x0 = column * size.x;
-    job->y0 = row * size.y;
-    job->x1 = job->x0 + size.x < lists->desc.width_px ? job->x0 + size.x : lists->desc.width_px;
-    job->y1 = job->y0 + size.y < lists->desc.height_px ? job->y0 + size.y : lists->desc.height_px;
-    if (lists->desc.slice_count == 1u) {
-        lo = info.x; /* nothing is between them where there is only sky */
-        hi = info.y;
-    }
-    t = hdrp_cull_tile_make(lists->camera, (float)job->x0, (float)job->y0, (float)job->x1,
-                            (float)job->y1, (float)lists->desc.width_px,
-                            (float)lists->desc.height_px);
+    hdrp_cull_tile t = hdrp_cull_tile_make(
+        lists->camera, (float)job->x0, (float)job->y0, (float)job->x1, (float)job->y1,
+        (float)lists->desc.width_px, (float)lists->desc.height_px);
     if (lists->desc.flags & HDRP_CULL_FAST) {
         hdrp_i_cull_test_bounds(job, job->candidate_count);
     } else {
         hdrp_i_cull_test_balls(&job->s, job->candidate_count, t, orthographic);
         hdrp_i_cull_test_planes(job, t, orthographic);
     }
+    return t;
+}
+
+static void hdrp_i_cull_build_tile(hdrp_i_cull_job* job, uint32_t column, uint32_t row)
+{
+    hdrp_cull_lists* lists = job->lists;
+    hdrp_u32x4 size = lists->grid.tiles;
+    uint32_t tile = row * size.z + column, h;
+    hdrp_v4 info = lists->tiles[tile];
+    float lo = lists->camera.eye_near.w, hi = lists->camera.right_far.w;
+    hdrp_cull_tile t;
+    hdrp_i_cull_set_rectangle(job, column, row, 1u, 1u);
+    if (lists->desc.slice_count == 1u) {
+        lo = info.x; /* nothing is between them where there is only sky */
+        hi = info.y;
+    }
+    t = hdrp_i_cull_test(job);
     hdrp_i_cull_hits(job, lo, hi);
     hdrp_i_cull_slices(job, info.z);
     for (h = 0u; h < job->hit_count; ++h) {
@@ -1541,6 +1557,31 @@ static void hdrp_i_cull_build_tile(hdrp_i_cull_job* job, uint32_t column, uint32
     hdrp_i_cull_write(job, tile, hdrp_i_cull_limit(job));
 }
 
+/* Leaves out the shapes of a coarse cell that reach none of what its tiles show. */
+static void hdrp_i_cull_prune_coarse(hdrp_i_cull_job* job, uint32_t cell, uint32_t first_row)
+{
+    const hdrp_cull_lists* lists = job->lists;
+    hdrp_i_cull_scratch* s = &job->s;
+    uint32_t first_column = cell * job->coarse_columns, row, column, h;
+    float lo = HDRP_FLT_MAX, hi = 0.0f;
+    for (row = first_row; row < first_row + job->coarse_rows && row < lists->grid.tiles.w; ++row) {
+        for (column = first_column;
+             column < first_column + job->coarse_columns && column < lists->grid.tiles.z;
+             ++column) {
+            hdrp_v4 info = lists->tiles[(size_t)row * lists->grid.tiles.z + column];
+            lo = info.x <= info.y ? hdrp_min(info.x, lo) : lo;
+            hi = info.x <= info.y ? hdrp_max(info.y, hi) : hi;
+        }
+    }
+    hdrp_i_cull_set_rectangle(job, first_column, first_row, job->coarse_columns, job->coarse_rows);
+    hdrp_i_cull_test(job);
+    hdrp_i_cull_hits(job, lo, hi);
+    for (h = 0u; h < job->hit_count; ++h) {
+        s->coarse[(size_t)cell * s->capacity + h] = s->candidate[s->hit[h]];
+    }
+    s->coarse_count[cell] = job->hit_count;
+}
+
 static void hdrp_i_cull_build_row(hdrp_i_cull_job* job, uint32_t coarse_row)
 {
     hdrp_u32x4 size = job->lists->grid.tiles;
@@ -1550,6 +1591,10 @@ static void hdrp_i_cull_build_row(hdrp_i_cull_job* job, uint32_t coarse_row)
     for (cell = 0u; cell < across; ++cell) {
         uint32_t begin = cell * job->coarse_columns, end = begin + job->coarse_columns;
         hdrp_i_cull_gather(job, cell);
+        if (job->lists->desc.slice_count == 1u) { /* many small tiles share what is left */
+            hdrp_i_cull_prune_coarse(job, cell, first_row);
+            hdrp_i_cull_gather(job, cell);
+        }
         for (row = first_row; row < first_row + job->coarse_rows && row < size.w; ++row) {
             for (column = begin; column < end && column < size.z; ++column) {
                 hdrp_i_cull_build_tile(job, column, row);
