@@ -1,9 +1,9 @@
-/* hdrp_cull.h - lists of the lights, probes and decals that reach each tile or cluster of a picture.
+/* hdrp_cull.h - lists of the lights, probes and decals that reach each tile or cluster of pixels.
  * SPDX-License-Identifier: MIT
  *
  * What a pixel is lit by is looked up in a grid over the picture: tiles for opaque surfaces, whose
- * depth is known, clusters (tiles between two depths) for everything. Nothing is missed, whatever the
- * light, the camera and the rounding; hdrp_cull_volume.h, which this header includes, says how.
+ * depth is known, clusters (tiles between two depths) for everything. Nothing is missed, whatever
+ * the light, the camera and the rounding; hdrp_cull_volume.h, which this header includes, says how.
  *
  *     #define HDRP_CULL_IMPLEMENTATION          in one source file
  *     #include "hdrp_cull.h"
@@ -31,14 +31,18 @@
  *         shade with light hdrp_cull_entry_index(entries[i])
  *
  * Fine-pruned tiles, for opaque surfaces: tile_width_px = tile_height_px = 16, slice_count = 1, and
- * HDRP_CULL_PIXELS, which keeps what reaches at least one pixel; HDRP_CULL_BLOCKS notes of each entry
- * which sixteenths of the tile it reaches. Big tiles: 64 pixels, slice_count = 1, no depth.
+ * HDRP_CULL_PIXELS, which keeps what reaches at least one pixel; HDRP_CULL_BLOCKS notes of each
+ * entry which sixteenths of the tile it reaches. Big tiles: 64 pixels, slice_count = 1, no depth.
  *
  * Lists are ordered by category, then by index, and do not depend on how the work was split. A tile
  * whose entries do not fit drops the least important shapes, of equals those of higher index, and
- * counts them: hdrp_cull_dropped.
+ * counts them: hdrp_cull_count.
  *
  * >>index of the functions, without hdrp_cull_ (written by tools/api_check.py --write)
+ *   grid: log2 series_scale grid_make tile_of_pixel slice cell
+ *   lists: first last entry_index entry_covers lowest_bit
+ *   sets of shapes: set_memory_size set_init set_begin set_project
+ *   grids of lists: memory_size init begin measure_depth rows scratch_size build count masks
  * >>end */
 #ifndef HDRP_CULL_H
 #define HDRP_CULL_H
@@ -72,13 +76,13 @@
 
 /* >>grid
  * What a shader needs to find the list of a position. Of each tile it also needs a vector, written
- * by hdrp_cull_measure_depth: x nearest and y farthest opaque depth [m], nothing opaque where x > y;
- * z scale of its slices, w 0. */
+ * by hdrp_cull_measure_depth: x nearest and y farthest opaque depth [m], nothing opaque where
+ * x > y; z scale of its slices, w 0. */
 
 /* Made by hdrp_cull_grid_make. */
 struct hdrp_cull_grid {
-    hdrp_u32x4 tiles; /* any: width and height in px of a tile, columns, rows */
-    hdrp_u32x4 cells; /* any: slices of a tile, entries of a tile, width and height of a block */
+    hdrp_u32x4 tiles; /* any  width and height in px of a tile, columns, rows */
+    hdrp_u32x4 cells; /* any  slices of a tile, entries of a tile, width and height of a block */
     hdrp_v4 series;   /* x [1e-6,1e9] m, y [-20,30] its log2, z [1e-6,1e18] m, w [0,1e7] scale */
 };
 HDRP_TYPEDEF(hdrp_cull_grid)
@@ -101,10 +105,10 @@ HDRP_FN float hdrp_cull_log2(float x)
 
 /** Scale of the slices of a tile: half of them are in front of a depth.
  *  grid        valid
- *  farthest_m  any     farthest opaque depth
+ *  farthest_m  any      farthest opaque depth
  *  returns     [0,1e7]  slices in an octave of depth
- *  edges       a depth of less than a thousandth beyond the start of the series counts as that; an
- *              infinite one or NaN as the start
+ *  edges       a depth up to a thousandth of an octave beyond the start of the series counts as
+ *              that, and so does NaN; an infinite one counts as FLT_MAX
  *  error       none: a definition
  *  source      Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
  *              Definition Render Pipeline", slides on clustered lists; without the limit that their
@@ -115,6 +119,13 @@ HDRP_FN float hdrp_cull_series_scale(hdrp_cull_grid grid, float farthest_m)
     return hdrp_f32_from_u32(grid.cells.x >> 1) / hdrp_max(octaves, 1e-3f);
 }
 
+/* x, but at least 1 and at most a limit. */
+HDRP_FN hdrp_u32 hdrp_i_cull_limit_u32(hdrp_u32 x, hdrp_u32 limit)
+{
+    hdrp_u32 y = x > 0u ? x : 1u;
+    return y < limit ? y : limit;
+}
+
 /** The grid over a picture.
  *  camera          valid
  *  picture         any  x width and y height in px, z slices, w entries of a tile
@@ -123,8 +134,9 @@ HDRP_FN float hdrp_cull_series_scale(hdrp_cull_grid grid, float farthest_m)
  *  series_end_m    any  last slice of a tile without depth ends here; 0: the far distance, but at
  *                       most 1000 times the start
  *  returns         valid
- *  edges           sizes of 0 count as 1; the last slice reaches to the far distance, wherever the
- *                  series ends
+ *  edges           sizes and slices of 0 count as 1, what is beyond HDRP_CULL_SIZE_MAX and
+ *                  HDRP_CULL_SLICES_MAX as these; the last slice reaches to the far distance,
+ *                  wherever the series ends
  *  error           none: limits
  *  source          a definition */
 HDRP_FN hdrp_cull_grid hdrp_cull_grid_make(hdrp_cull_camera camera, hdrp_u32x4 picture,
@@ -132,15 +144,17 @@ HDRP_FN hdrp_cull_grid hdrp_cull_grid_make(hdrp_cull_camera camera, hdrp_u32x4 p
                                            float series_end_m)
 {
     hdrp_cull_grid g;
-    hdrp_u32 w = tile.x > 0u ? tile.x : 1u;
-    hdrp_u32 h = tile.y > 0u ? tile.y : 1u;
-    hdrp_u32 slices = picture.z > 0u ? picture.z : 1u;
+    hdrp_u32 w = hdrp_i_cull_limit_u32(tile.x, HDRP_CULL_SIZE_MAX);
+    hdrp_u32 h = hdrp_i_cull_limit_u32(tile.y, HDRP_CULL_SIZE_MAX);
+    hdrp_u32 columns = (hdrp_i_cull_limit_u32(picture.x, HDRP_CULL_SIZE_MAX) + w - 1u) / w;
+    hdrp_u32 rows = (hdrp_i_cull_limit_u32(picture.y, HDRP_CULL_SIZE_MAX) + h - 1u) / h;
+    hdrp_u32 slices = hdrp_i_cull_limit_u32(picture.z, HDRP_CULL_SLICES_MAX);
     float start =
         hdrp_clamp(series_start_m > 0.0f ? series_start_m : camera.eye_near.w, 1e-6f, 1e9f);
     float end = hdrp_min(camera.right_far.w, 1000.0f * start);
     float octaves;
     end = hdrp_clamp(series_end_m > 0.0f ? series_end_m : end, start, HDRP_CULL_FAR_INFINITE);
-    g.tiles = hdrp_u32x4_make(w, h, (picture.x + w - 1u) / w, (picture.y + h - 1u) / h);
+    g.tiles = hdrp_u32x4_make(w, h, columns, rows);
     g.cells = hdrp_u32x4_make(slices, picture.w, (w + 3u) >> 2, (h + 3u) >> 2);
     octaves = hdrp_max(hdrp_cull_log2(end) - hdrp_cull_log2(start), 1e-3f);
     g.series = hdrp_v4_make(start, hdrp_cull_log2(start), end, hdrp_f32_from_u32(slices) / octaves);
@@ -189,8 +203,8 @@ HDRP_FN hdrp_u32 hdrp_cull_cell(hdrp_cull_grid grid, hdrp_u32 tile, hdrp_u32 sli
 }
 
 /* >>lists
- * A cell is x the first of its entries, y and z the counts of the four categories, 16 bits each, the
- * first in the low bits of y, and w how many shapes its tile has dropped. */
+ * A cell is x the first of its entries, y and z the counts of the four categories, 16 bits each,
+ * the first in the low bits of y, and w how many shapes its tile has dropped. */
 
 /* Entries of a category. */
 HDRP_FN hdrp_u32 hdrp_i_cull_count(hdrp_u32x4 cell, hdrp_u32 category)
@@ -309,18 +323,19 @@ HDRP_API hdrp_result hdrp_cull_set_init(hdrp_cull_set* set, uint32_t capacity, v
  *  camera     from its makers
  *  width_px   [1,HDRP_CULL_SIZE_MAX]  of the picture
  *  height_px  [1,HDRP_CULL_SIZE_MAX]
- *  count      [0,capacity]  shapes that hdrp_cull_set_project will be given
+ *  count      [0,HDRP_CULL_SHAPES_MAX]  shapes that hdrp_cull_set_project will be given: at most
+ *             the capacity
  *  returns    HDRP_OK
  *  errors     HDRP_ERROR_NULL_POINTER, HDRP_ERROR_BAD_ARGUMENT
- *  note       what does not fit the capacity is for the caller to leave out: nothing is dropped here */
+ *  note       what exceeds the capacity is for the caller to leave out: nothing is dropped here */
 HDRP_API hdrp_result hdrp_cull_set_begin(hdrp_cull_set* set, const hdrp_cull_camera* camera,
                                          uint32_t width_px, uint32_t height_px, uint32_t count);
 
 /** First stage: shapes in view space, their planes and the bounds of each on the screen.
  *  set      after hdrp_cull_set_begin
  *  shapes   all `count` of them, in the world; an index in a list is an index into this array
- *  first    [0,count]  first to be projected
- *  count    [0,count]  how many
+ *  first    [0,HDRP_CULL_SHAPES_MAX]  first to be projected
+ *  count    [0,HDRP_CULL_SHAPES_MAX]  how many: at most up to the count of hdrp_cull_set_begin
  *  returns  HDRP_OK
  *  errors   HDRP_ERROR_NULL_POINTER, HDRP_ERROR_BAD_ARGUMENT for a bad range
  *  range    shapes are independent */
@@ -383,12 +398,12 @@ HDRP_API hdrp_result hdrp_cull_init(hdrp_cull_lists* lists, const hdrp_cull_desc
  *  errors   HDRP_ERROR_NULL_POINTER, HDRP_ERROR_BAD_ARGUMENT for another size of picture */
 HDRP_API hdrp_result hdrp_cull_begin(hdrp_cull_lists* lists, const hdrp_cull_set* set);
 
-/** Optional stage: the nearest and farthest opaque depth of tiles, and their slices. Without it
- *  lists serve transparent surfaces and fog: nothing is known to be in front.
+/** Optional stage: the nearest and farthest opaque depth of tiles, and their slices. Nothing is
+ *  known to be in front without it, as transparent surfaces and fog want it.
  *  lists      after hdrp_cull_begin
  *  depth      of the picture; what is NaN, at or beyond the far distance is sky
- *  first_row  [0,grid.tiles.w]  of tiles
- *  row_count  [0,grid.tiles.w]
+ *  first_row  [0,HDRP_CULL_SIZE_MAX]  first row of tiles
+ *  row_count  [0,HDRP_CULL_SIZE_MAX]  how many: at most up to grid.tiles.w
  *  returns    HDRP_OK
  *  errors     HDRP_ERROR_NULL_POINTER, HDRP_ERROR_BAD_ARGUMENT for a bad range or stride
  *  range      rows of tiles are independent
@@ -409,12 +424,12 @@ HDRP_API uint32_t hdrp_cull_rows(const hdrp_cull_lists* lists);
 HDRP_API size_t hdrp_cull_scratch_size(const hdrp_cull_desc* desc);
 
 /** Last stage: the lists.
- *  lists          after hdrp_cull_begin, and hdrp_cull_measure_depth of the same rows if there is depth
+ *  lists          after hdrp_cull_begin and, where there is depth, hdrp_cull_measure_depth
  *  set            after hdrp_cull_set_project of all its shapes
- *  depth          that of hdrp_cull_measure_depth; needed with HDRP_CULL_PIXELS or HDRP_CULL_BLOCKS,
- *                 else NULL will do
- *  first_row      [0,hdrp_cull_rows]  first of the rows to build
- *  row_count      [0,hdrp_cull_rows]
+ *  depth          that of hdrp_cull_measure_depth; needed with HDRP_CULL_PIXELS or
+ *                 HDRP_CULL_BLOCKS, else NULL will do
+ *  first_row      [0,HDRP_CULL_SIZE_MAX]  first row to build, of those that hdrp_cull_rows counts
+ *  row_count      [0,HDRP_CULL_SIZE_MAX]  how many: at most up to hdrp_cull_rows
  *  scratch        block of the caller, aligned to HDRP_MEMORY_ALIGNMENT, for this call alone
  *  scratch_bytes  size of the block
  *  returns        HDRP_OK, also where shapes were dropped
@@ -427,12 +442,9 @@ HDRP_API hdrp_result hdrp_cull_build(hdrp_cull_lists* lists, const hdrp_cull_set
                                      const hdrp_cull_depth* depth, uint32_t first_row,
                                      uint32_t row_count, void* scratch, size_t scratch_bytes);
 
-/** What did not fit, and what did.
- *  tiles    that dropped something
- *  dropped  shapes, summed over the tiles
- *  entries  of all lists */
+/* What did not fit, and what did. */
 typedef struct hdrp_cull_stats {
-    uint64_t entries;
+    uint64_t entries;    /* of all lists */
     uint32_t tiles_full; /* tiles that dropped shapes */
     uint32_t dropped;    /* shapes dropped, summed over the tiles */
     uint32_t longest;    /* entries of the longest list */
@@ -445,12 +457,13 @@ typedef struct hdrp_cull_stats {
  *  errors   HDRP_ERROR_NULL_POINTER */
 HDRP_API hdrp_result hdrp_cull_count(const hdrp_cull_lists* lists, hdrp_cull_stats* stats);
 
-/** The lists of tiles as bit masks: bit i % 32 of word i / 32 of a cell is set where shape i is listed.
+/** The lists of tiles as bit masks: bit i % 32 of word i / 32 of a cell is set where shape i is
+ *  listed.
  *  lists       after hdrp_cull_build of the tiles' rows
- *  first_tile  [0,tiles]
- *  tile_count  [0,tiles]
+ *  first_tile  any  index of the first tile, row by row
+ *  tile_count  any  how many: at most up to grid.tiles.z times grid.tiles.w
  *  words       result: `stride` words for each cell, of the first tile on
- *  stride      words of a cell: at least (count + 31) / 32 for a set of count shapes
+ *  stride      any  words of a cell: at least (count + 31) / 32 for a set of count shapes
  *  returns     HDRP_OK
  *  errors      HDRP_ERROR_NULL_POINTER, HDRP_ERROR_BAD_ARGUMENT for a bad range, or a stride that
  *              does not hold a listed index, in which case nothing is written
@@ -876,6 +889,7 @@ typedef struct hdrp_i_cull_scratch {
     float *hit_nearest, *hit_farthest;
     uint16_t* blocks; /* of a hit: what it reaches */
     uint16_t* keep;   /* of a hit: 0 where there is no room */
+    uint32_t* inside; /* of a candidate: 1 where its ball contains all that a tile shows */
     uint8_t *hit_first, *hit_last;
     uint64_t* order;                    /* hits by importance */
     float *pixel_x, *pixel_y, *pixel_z; /* of a tile */
@@ -937,6 +951,7 @@ static size_t hdrp_i_cull_place_scratch(hdrp_i_cull_scratch* s, const hdrp_cull_
     s->hit = (uint16_t*)hdrp_i_cull_take(&a, n, sizeof(uint16_t));
     s->blocks = (uint16_t*)hdrp_i_cull_take(&a, n, sizeof(uint16_t));
     s->keep = (uint16_t*)hdrp_i_cull_take(&a, n, sizeof(uint16_t));
+    s->inside = (uint32_t*)hdrp_i_cull_take(&a, n, sizeof(uint32_t));
     s->hit_first = (uint8_t*)hdrp_i_cull_take(&a, n, 1u);
     s->hit_last = (uint8_t*)hdrp_i_cull_take(&a, n, 1u);
     s->order = (uint64_t*)hdrp_i_cull_take(&a, n, sizeof(uint64_t));
@@ -1207,18 +1222,25 @@ static void hdrp_i_cull_keep(hdrp_i_cull_job* job, const uint16_t* keep)
 
 /* ---- pixels ---------------------------------------------------------------------------------- */
 
+/* The place that the centre of a pixel shows at a depth. */
+static hdrp_v3 hdrp_i_cull_position(const hdrp_cull_lists* lists, uint32_t x_px, uint32_t y_px,
+                                    float z)
+{
+    hdrp_v4 w = lists->camera.window;
+    float k = lists->camera.forward_orthographic.w > 0.0f ? 1.0f : z;
+    float u = w.x + ((float)(int)x_px + 0.5f) * (w.z / (float)(int)lists->desc.width_px);
+    float v = w.y + ((float)(int)(lists->desc.height_px - y_px) - 0.5f) *
+                        (w.w / (float)(int)lists->desc.height_px);
+    return hdrp_v3_make(u * k, v * k, z);
+}
+
 /* Where the surfaces of a tile are, row by row; depth is negative where there is only sky. */
 static void hdrp_i_cull_read_pixels(hdrp_i_cull_job* job)
 {
     const hdrp_cull_lists* lists = job->lists;
-    hdrp_v4 window = lists->camera.window;
-    float du = window.z / (float)lists->desc.width_px;
-    float dv = window.w / (float)lists->desc.height_px;
-    float flat = lists->camera.forward_orthographic.w;
     uint32_t width = job->x1 - job->x0, x, y, i;
     for (y = job->y0; y < job->y1; ++y) {
         const float* texels = job->depth->texels + y * job->depth->row_stride + job->x0;
-        float v = window.y + ((float)(lists->desc.height_px - y) - 0.5f) * dv;
         float* pixel_x = job->s.pixel_x + (size_t)(y - job->y0) * width;
         float* pixel_y = job->s.pixel_y + (size_t)(y - job->y0) * width;
         float* pixel_z = job->s.pixel_z + (size_t)(y - job->y0) * width;
@@ -1228,51 +1250,48 @@ static void hdrp_i_cull_read_pixels(hdrp_i_cull_job* job)
         }
         HDRP_I_CULL_INDEPENDENT
         for (i = 0u; i < width; ++i) {
-            float k = flat > 0.0f ? 1.0f : pixel_z[i];
-            pixel_x[i] = (window.x + ((float)(int)(job->x0 + i) + 0.5f) * du) * k;
-            pixel_y[i] = v * k;
+            hdrp_v3 p = hdrp_i_cull_position(lists, job->x0 + i, y, pixel_z[i]);
+            pixel_x[i] = p.x;
+            pixel_y[i] = p.y;
         }
     }
 }
 
-/* Notes which of some pixels a shape of a kind reaches. A constant kind leaves a loop without the
+/* Whether a shape of a kind reaches one of some pixels. A constant kind leaves a loop without the
  * other ones in it. */
-HDRP_FN void hdrp_i_cull_reach_kind(const hdrp_i_cull_scratch* s, hdrp_cull_shape shape,
-                                    hdrp_u32 kind, uint32_t first, uint32_t count)
+HDRP_FN uint32_t hdrp_i_cull_reach_kind(const hdrp_i_cull_scratch* s, hdrp_cull_shape shape,
+                                        hdrp_u32 kind, uint32_t first, uint32_t count)
 {
     const float* x = s->pixel_x + first;
     const float* y = s->pixel_y + first;
     const float* z = s->pixel_z + first;
     uint32_t* reached = s->reached;
-    uint32_t i;
+    uint32_t any = 0u, i;
     shape.bits.x = kind;
     HDRP_I_CULL_INDEPENDENT
     for (i = 0u; i < count; ++i) {
         float in = hdrp_cull_shape_contains(shape, hdrp_v3_make(x[i], y[i], z[i]));
         float seen = z[i] >= 0.0f ? in : 0.0f;
         reached[i] = seen > 0.0f ? 1u : 0u;
+        any |= reached[i];
     }
+    return any;
 }
 
-static void hdrp_i_cull_reach(const hdrp_i_cull_scratch* s, const hdrp_cull_shape* shape,
-                              uint32_t first, uint32_t count)
+static uint32_t hdrp_i_cull_reach(const hdrp_i_cull_scratch* s, const hdrp_cull_shape* shape,
+                                  uint32_t first, uint32_t count)
 {
     switch (hdrp_cull_shape_kind(*shape)) {
     case HDRP_CULL_KIND_BALL:
-        hdrp_i_cull_reach_kind(s, *shape, HDRP_CULL_KIND_BALL, first, count);
-        break;
+        return hdrp_i_cull_reach_kind(s, *shape, HDRP_CULL_KIND_BALL, first, count);
     case HDRP_CULL_KIND_CONE:
-        hdrp_i_cull_reach_kind(s, *shape, HDRP_CULL_KIND_CONE, first, count);
-        break;
+        return hdrp_i_cull_reach_kind(s, *shape, HDRP_CULL_KIND_CONE, first, count);
     case HDRP_CULL_KIND_PYRAMID:
-        hdrp_i_cull_reach_kind(s, *shape, HDRP_CULL_KIND_PYRAMID, first, count);
-        break;
+        return hdrp_i_cull_reach_kind(s, *shape, HDRP_CULL_KIND_PYRAMID, first, count);
     case HDRP_CULL_KIND_BOX:
-        hdrp_i_cull_reach_kind(s, *shape, HDRP_CULL_KIND_BOX, first, count);
-        break;
+        return hdrp_i_cull_reach_kind(s, *shape, HDRP_CULL_KIND_BOX, first, count);
     default:
-        hdrp_i_cull_reach_kind(s, *shape, HDRP_CULL_KIND_FRONT, first, count);
-        break;
+        return hdrp_i_cull_reach_kind(s, *shape, HDRP_CULL_KIND_FRONT, first, count);
     }
 }
 
@@ -1281,14 +1300,21 @@ static uint32_t hdrp_i_cull_blocks_of_band(const hdrp_i_cull_job* job, uint32_t 
 {
     uint32_t* reached = job->s.reached;
     uint32_t width = job->x1 - job->x0, block_width = job->lists->grid.cells.z;
-    uint32_t bits = 0u, row, x;
+    uint32_t bits = 0u, block = 0u, row, x, end;
     for (row = 1u; row < rows; ++row) {
+        const uint32_t* below = reached + (size_t)row * width;
+        HDRP_I_CULL_INDEPENDENT
         for (x = 0u; x < width; ++x) {
-            reached[x] |= reached[(size_t)row * width + x];
+            reached[x] |= below[x];
         }
     }
-    for (x = 0u; x < width; ++x) {
-        bits |= reached[x] << (x / block_width);
+    for (x = 0u; x < width; ++block) {
+        uint32_t any = 0u;
+        end = x + block_width < width ? x + block_width : width;
+        for (; x < end; ++x) {
+            any |= reached[x];
+        }
+        bits |= any << block;
     }
     return bits;
 }
@@ -1299,13 +1325,16 @@ static uint32_t hdrp_i_cull_blocks_reached(const hdrp_i_cull_job* job, const hdr
     uint32_t width = job->x1 - job->x0, height = job->y1 - job->y0;
     uint32_t band_height = job->lists->grid.cells.w, bits = 0u, band;
     int all = (job->lists->desc.flags & HDRP_CULL_BLOCKS) != 0u;
-    for (band = 0u; band * band_height < height && (all || bits == 0u); ++band) {
+    for (band = 0u; band * band_height < height; ++band) {
         uint32_t row = band * band_height;
         uint32_t rows = height - row < band_height ? height - row : band_height;
-        hdrp_i_cull_reach(&job->s, shape, row * width, rows * width);
-        bits |= hdrp_i_cull_blocks_of_band(job, rows) << (4u * band);
+        uint32_t any = hdrp_i_cull_reach(&job->s, shape, row * width, rows * width);
+        if (any && !all) {
+            return 0xffffu;
+        }
+        bits |= any ? hdrp_i_cull_blocks_of_band(job, rows) << (4u * band) : 0u;
     }
-    return all || bits == 0u ? bits : 0xffffu;
+    return bits;
 }
 
 /* The box around the surfaces of a tile. */
@@ -1324,35 +1353,96 @@ static hdrp_i_cull_box hdrp_i_cull_box_of_tile(hdrp_cull_tile tile, hdrp_v4 info
     return b;
 }
 
-/* Whether a shape, which is convex, contains the corners of a box. */
-static int hdrp_i_cull_contains_box(const hdrp_cull_shape* shape, const hdrp_i_cull_box* b)
+/* Whether a shape other than a ball contains the corners of a box. */
+static uint32_t hdrp_i_cull_contains_box(const hdrp_cull_shape* shape, const hdrp_i_cull_box* b)
 {
     uint32_t i;
     if (shape->half_angle.x < 0.0f && hdrp_cull_shape_kind(*shape) == HDRP_CULL_KIND_CONE) {
-        return 0; /* not convex */
+        return 0u; /* not convex: the corners say nothing of what is between them */
     }
     for (i = 0u; i < 8u; ++i) {
         hdrp_v3 corner = hdrp_v3_make(i & 1u ? b->hi.x : b->lo.x, i & 2u ? b->hi.y : b->lo.y,
                                       i & 4u ? b->hi.z : b->lo.z);
         if (hdrp_cull_shape_contains(*shape, corner) <= 0.0f) {
-            return 0;
+            return 0u;
         }
     }
-    return 1;
+    return 1u;
 }
 
-/* Marks which sixteenths each hit reaches, and drops those that reach none. Pixels are looked at
- * only where a hit does not contain the whole of what the tile shows. */
+/* Whether the ball of each candidate contains a box: its farthest corner. */
+static void hdrp_i_cull_balls_contain_box(const hdrp_i_cull_job* job, hdrp_i_cull_box b)
+{
+    const float* x = job->s.x;
+    const float* y = job->s.y;
+    const float* z = job->s.z;
+    const float* radius = job->s.radius;
+    uint32_t* inside = job->s.inside;
+    uint32_t m;
+    HDRP_I_CULL_INDEPENDENT
+    for (m = 0u; m < job->candidate_count; ++m) {
+        float dx = hdrp_max(x[m] - b.lo.x, b.hi.x - x[m]);
+        float dy = hdrp_max(y[m] - b.lo.y, b.hi.y - y[m]);
+        float dz = hdrp_max(z[m] - b.lo.z, b.hi.z - z[m]);
+        inside[m] = dx * dx + dy * dy + dz * dz <= radius[m] * radius[m] ? 1u : 0u;
+    }
+}
+
+/* Pixels that are asked first, spread over the tile. */
+#define HDRP_I_CULL_PROBES 8u
+
+/* Adds the candidates whose ball contains one of a few pixels. */
+static void hdrp_i_cull_probe(const hdrp_i_cull_job* job)
+{
+    const hdrp_cull_lists* lists = job->lists;
+    const float* x = job->s.x;
+    const float* y = job->s.y;
+    const float* z = job->s.z;
+    const float* radius = job->s.radius;
+    uint32_t* inside = job->s.inside;
+    uint32_t width = job->x1 - job->x0, height = job->y1 - job->y0, i, m;
+    for (i = 0u; i < HDRP_I_CULL_PROBES; ++i) {
+        uint32_t px = job->x0 + (2u * i + 1u) * width / (2u * HDRP_I_CULL_PROBES);
+        uint32_t py = job->y0 + (2u * (3u * i % HDRP_I_CULL_PROBES) + 1u) * height /
+                                    (2u * HDRP_I_CULL_PROBES);
+        float depth;
+        hdrp_v3 p;
+        hdrp_i_cull_read(job->depth, &lists->camera,
+                         job->depth->texels + py * job->depth->row_stride + px, 1u, &depth);
+        if (depth < 0.0f) {
+            continue;
+        }
+        p = hdrp_i_cull_position(lists, px, py, depth);
+        HDRP_I_CULL_INDEPENDENT
+        for (m = 0u; m < job->candidate_count; ++m) {
+            float dx = x[m] - p.x, dy = y[m] - p.y, dz = z[m] - p.z;
+            inside[m] |= dx * dx + dy * dy + dz * dz <= radius[m] * radius[m] ? 1u : 0u;
+        }
+    }
+}
+
+/* Marks which sixteenths each hit reaches, and drops those that reach none. All pixels are looked at
+ * only where a hit does not contain the whole of what the tile shows, or one of a few. */
 static void hdrp_i_cull_test_pixels(hdrp_i_cull_job* job, hdrp_cull_tile tile, hdrp_v4 info)
 {
     hdrp_i_cull_scratch* s = &job->s;
+    int all = (job->lists->desc.flags & HDRP_CULL_BLOCKS) != 0u, read = 0;
     hdrp_i_cull_box box =
         hdrp_i_cull_box_of_tile(tile, info, job->lists->camera.forward_orthographic.w);
-    int read = 0;
     uint32_t h;
+    if (job->hit_count == 0u) {
+        return;
+    }
+    hdrp_i_cull_balls_contain_box(job, box);
+    if (!all) {
+        hdrp_i_cull_probe(job);
+    }
     for (h = 0u; h < job->hit_count; ++h) {
-        const hdrp_cull_shape* shape = &job->set->shapes[s->candidate[s->hit[h]]];
-        if (hdrp_i_cull_contains_box(shape, &box)) {
+        uint32_t m = s->hit[h];
+        const hdrp_cull_shape* shape = &job->set->shapes[s->candidate[m]];
+        int ball = hdrp_cull_shape_kind(*shape) == HDRP_CULL_KIND_BALL;
+        /* Of other shapes a pixel is found sooner than eight corners are looked at. */
+        if (ball ? s->inside[m] : all && s->inside[m] && hdrp_i_cull_contains_box(shape, &box)) {
             continue;
         }
         if (!read) {
@@ -1449,6 +1539,11 @@ static void hdrp_i_cull_slices(hdrp_i_cull_job* job, float scale)
     uint8_t* last = job->s.hit_last;
     hdrp_cull_grid grid = job->lists->grid;
     uint32_t h;
+    if (job->lists->desc.slice_count == 1u) {
+        memset(first, 0, job->hit_count);
+        memset(last, 0, job->hit_count);
+        return;
+    }
     HDRP_I_CULL_INDEPENDENT
     for (h = 0u; h < job->hit_count; ++h) {
         first[h] = (uint8_t)hdrp_cull_slice(grid, scale, nearest[h]);

@@ -3,8 +3,8 @@
  *
  * The geometry of light culling, for hdrp_cull.h, which includes this header, and for shaders. One
  * question is asked of everything: between which depths does a shape lie inside a tile? A tile is a
- * rectangle of pixels, seen as the frustum behind it; a cell of a grid of clusters is a tile between
- * two depths, so that the interval answers for all slices of a tile at once.
+ * rectangle of pixels, seen as the frustum behind it; a cell of a grid of clusters is a tile
+ * between two depths, so that the interval answers for all slices of a tile at once.
  *
  *     shape = hdrp_cull_shape_from_light(light);             a convex body in the world
  *     shape = hdrp_cull_shape_in_view(shape, camera);        the same, seen by the camera
@@ -14,10 +14,10 @@
  *         plane = hdrp_cull_shape_plane(shape, i, orthographic);
  *         interval = hdrp_cull_interval_plane(interval, tile, plane, orthographic);
  *
- * The interval of a ball is the true one; a plane that touches a shape from outside shortens it. The
- * planes of a shape are those of its faces and those that it shares with the eye, so that the shape
- * is missed by a tile that misses its silhouette. Every result is conservative: rounding makes
- * shapes larger, by 1e-6 of their distance, and never smaller.
+ * The interval of a ball is the true one; a plane that touches a shape from outside shortens it.
+ * The planes of a shape are those of its faces and those that it shares with the eye, so that the
+ * shape is missed by a tile that misses its silhouette. Every result is conservative: rounding
+ * makes shapes larger, by 1e-6 of their distance, and never smaller.
  *
  * View space, here: x to the right, y up, z the depth in front of the camera, in metres. Pixels
  * count from the upper left. Angles of lights reach from 0 to all around: what is wider than half a
@@ -28,6 +28,11 @@
  * override macros. There is no algorithm layer.
  *
  * >>index of the functions, without hdrp_cull_ (written by tools/api_check.py --write)
+ *   camera: camera_perspective camera_orthographic view_from_world
+ *   shapes: shape_sphere shape_box shape_from_light shape_kind shape_category shape_in_view
+ *       shape_ball shape_plane_count shape_plane shape_contains
+ *   tiles: tile_make interval_ball interval_plane
+ *   screen bounds: ball_bounds shape_bounds
  * >>end */
 #ifndef HDRP_CULL_VOLUME_H
 #define HDRP_CULL_VOLUME_H
@@ -45,7 +50,7 @@
 
 /* Shapes grow by this share of their distance from the eye and of their size: 8 roundings. */
 #define HDRP_CULL_MARGIN 1e-6f
-/* Metres. Farther from the camera a shape counts as reaching everywhere, if its range is as long. */
+/* Metres. What is farther from the camera, or that large, counts as reaching everywhere. */
 #define HDRP_CULL_DISTANCE_MAX 1e12f
 /* Metres; as the far distance of a camera: none. */
 #define HDRP_CULL_FAR_INFINITE 1e18f
@@ -132,7 +137,7 @@ HDRP_FN hdrp_v2 hdrp_i_cull_window(float lo, float hi, float limit)
  *  eye          any  m
  *  forward      any  direction of view; any length
  *  up           any  roughly upwards in the picture; any length, need not be orthogonal
- *  tan_left     any  x / depth at the left edge of the picture: negative where it is left of the axis
+ *  tan_left     any  x / depth at the left edge of the picture: negative left of the axis
  *  tan_right    any  at the right edge
  *  tan_bottom   any  y / depth at the lower edge
  *  tan_top      any  at the upper edge
@@ -189,8 +194,8 @@ HDRP_FN hdrp_cull_camera hdrp_cull_camera_orthographic(hdrp_v3 eye, hdrp_v3 forw
  *  edges     none
  *  error     <= 3e-7 relative to the distance, per component  @accuracy cull_view_from_world
  *  source    a definition
- *  note      the difference to the eye comes first, so that far from the origin nothing is lost that
- *            the position has not lost */
+ *  note      the difference to the eye comes first, so that far from the origin nothing is lost
+ *            that the position has not lost */
 HDRP_FN hdrp_v3 hdrp_cull_view_from_world(hdrp_v3 position, hdrp_cull_camera camera)
 {
     hdrp_v3 d = hdrp_v3_sub(position, hdrp_v3_from_v4(camera.eye_near));
@@ -703,8 +708,8 @@ HDRP_FN hdrp_v4 hdrp_i_cull_box_plane(hdrp_cull_shape s, hdrp_u32 i, float ortho
  *  i             [0,11]  which, below hdrp_cull_shape_plane_count
  *  orthographic  [0,1]  1 for an orthographic camera
  *  returns       any    xyz unit normal, or 0; the shape is where dot(normal, p) <= w
- *  edges         a normal of 0 and w = 1 where there is no such plane, as of an outline that is seen
- *                from inside
+ *  edges         a normal of 0 and w = 1 where there is no such plane, as of an outline that is
+ *                seen from inside
  *  error         none: encloses the shape; widened as HDRP_CULL_MARGIN says
  *  source        supporting planes of convex bodies, faces and outlines as seen from the eye */
 HDRP_FN hdrp_v4 hdrp_cull_shape_plane(hdrp_cull_shape shape, hdrp_u32 i, float orthographic)
@@ -779,11 +784,10 @@ HDRP_FN float hdrp_cull_shape_contains(hdrp_cull_shape shape, hdrp_v3 position)
 
 /* A rectangle of a picture. Made by hdrp_cull_tile_make. */
 struct hdrp_cull_tile {
-    hdrp_v4 window;       /* left, right, bottom, top: x / z, or m when orthographic */
-    hdrp_v4 inverse_edge; /* 1 / (1 + w^2) for each w of the window */
-    hdrp_v4
-        inverse_corner; /* 1 / (1 + u^2 + v^2): left bottom, right bottom, left top, right top */
-    hdrp_v2 extent;     /* largest |u| and |v| */
+    hdrp_v4 window;         /* left, right, bottom, top: x / z, or m when orthographic */
+    hdrp_v4 inverse_edge;   /* 1 / (1 + w^2) for each w of the window */
+    hdrp_v4 inverse_corner; /* 1 / (1 + u^2 + v^2): left and right bottom, left and right top */
+    hdrp_v4 extent;         /* largest |u| and |v|; 0, 0 */
 };
 HDRP_TYPEDEF(hdrp_cull_tile)
 
@@ -818,8 +822,8 @@ HDRP_FN hdrp_cull_tile hdrp_cull_tile_make(hdrp_cull_camera camera, float x0_px,
     t.inverse_edge = hdrp_v4_make(1.0f / sq.x, 1.0f / sq.y, 1.0f / sq.z, 1.0f / sq.w);
     t.inverse_corner = hdrp_v4_make(1.0f / (sq.x + v0 * v0), 1.0f / (sq.y + v0 * v0),
                                     1.0f / (sq.x + v1 * v1), 1.0f / (sq.y + v1 * v1));
-    t.extent =
-        hdrp_v2_make(hdrp_max(hdrp_abs(u0), hdrp_abs(u1)), hdrp_max(hdrp_abs(v0), hdrp_abs(v1)));
+    t.extent = hdrp_v4_make(hdrp_max(hdrp_abs(u0), hdrp_abs(u1)),
+                            hdrp_max(hdrp_abs(v0), hdrp_abs(v1)), 0.0f, 0.0f);
     return t;
 }
 
@@ -909,9 +913,10 @@ HDRP_FN hdrp_cull_interval hdrp_i_cull_ball_orthographic(hdrp_cull_tile t, hdrp_
  *  orthographic  [0,1]   1 for an orthographic camera
  *  returns       any     nearest > farthest where the ball misses the tile
  *  edges         depths may be negative: behind the camera; a ball around the eye begins there
- *  error         <= 3e-6 relative to the larger of distance and radius  @accuracy cull_interval_ball
- *  source        derived: the extremes are those of the ball, of its circles in the four sides, or of
- *                its chords on the four edges of the tile; each counts where it is in the tile */
+ *  error         <= 3e-6 relative to the larger of distance and radius, as a radius: the interval
+ *                is that of a ball so much larger or smaller  @accuracy cull_interval_ball
+ *  source        derived: the extremes are those of the ball, of its circles in the four sides, or
+ *                of its chords on the four edges of the tile; each counts if it is in the tile */
 HDRP_FN hdrp_cull_interval hdrp_cull_interval_ball(hdrp_cull_tile tile, hdrp_v4 ball,
                                                    float orthographic)
 {

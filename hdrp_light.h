@@ -1007,9 +1007,11 @@ HDRP_FN float hdrp_light_box_attenuation(hdrp_v3 place, float half_width_m, floa
 /* For the caller's own code: a maker sets neither. */
 #define HDRP_LIGHT_FEATURE_SHADOW 256u /* the shadow index counts */
 #define HDRP_LIGHT_FEATURE_COOKIE 512u /* the cookie index counts */
+/* The light takes light away: hdrp_light_sign. */
+#define HDRP_LIGHT_FEATURE_NEGATIVE 1024u
 
-#define HDRP_LIGHT_LAYERS_ALL     0xffffffffu
-#define HDRP_LIGHT_INDEX_NONE     0xffffffffu
+#define HDRP_LIGHT_LAYERS_ALL       0xffffffffu
+#define HDRP_LIGHT_INDEX_NONE       0xffffffffu
 /* Brightest colour of a record: the lux of any light at any distance stay below FLT_MAX. */
 #define HDRP_LIGHT_COLOR_MAX 1e30f
 
@@ -1065,6 +1067,20 @@ HDRP_FN hdrp_u32 hdrp_light_type(hdrp_light light)
 HDRP_FN hdrp_u32 hdrp_light_affects(hdrp_light light, hdrp_u32 layers)
 {
     return (light.bits.y & layers) != 0u ? 1u : 0u;
+}
+
+/** The sign with which a light counts: artists darken corners with lights that take light away.
+ *  light    any
+ *  returns  [-1,1]  -1 for a light with HDRP_LIGHT_FEATURE_NEGATIVE, else 1
+ *  edges    none
+ *  error    none: a selection of bits
+ *  source   Kircher 2018, "Rendering Technology in Agents of Mayhem", slides on lighting compute
+ *  note     the sum over all lights may be negative: limit it to 0, after the last light and before
+ *           exposure. Limits within the sum would make it depend on the order of the lights. Culling
+ *           and attenuation are those of any light, and a colour stays positive */
+HDRP_FN float hdrp_light_sign(hdrp_light light)
+{
+    return (light.bits.x & HDRP_LIGHT_FEATURE_NEGATIVE) != 0u ? -1.0f : 1.0f;
 }
 
 /* 1 where x is a usable coordinate. */

@@ -52,6 +52,7 @@
  *   sampling: unit_from_u32 hash1 hash2 hash3 hammersley r2 fibonacci_disk fibonacci_sphere
  *       disk_concentric disk_polar hemisphere_cosine hemisphere_cosine_pdf hemisphere_uniform
  *       sphere_uniform
+ *   depth: depth_params_perspective depth_params_orthographic view_depth device_depth
  *   algorithm layer: result_string
  * >>end
  */
@@ -1831,13 +1832,18 @@ HDRP_FN hdrp_v3 hdrp_sphere_uniform(hdrp_v2 u)
 /* How to turn device depth into metres. Made by hdrp_depth_params_perspective and
  * hdrp_depth_params_orthographic. */
 struct hdrp_depth_params {
-    hdrp_v4 ratio;  /* [-1e18,1e18] with e the share of nearness: depth = (x e + y) / (z e + w) */
-    hdrp_v2 device; /* [-1,1] e = x * device depth + y: 1 at the near distance, 0 at the far one */
+    hdrp_v4 ratio;    /* [-1e18,1e18] depth = (x e + y) / (z e + w) with e: */
+    hdrp_v4 nearness; /* [-1,1] e = x * device depth + y, 1 at the near and 0 at the far distance */
 };
 HDRP_TYPEDEF(hdrp_depth_params)
 
 /* Metres; as the far distance: none. Also the depth of what is behind everything. */
 #define HDRP_DEPTH_INFINITE 1e18f
+
+HDRP_FN hdrp_v4 hdrp_i_depth_nearness(hdrp_u32 reverse)
+{
+    return hdrp_v4_make(reverse != 0u ? 1.0f : -1.0f, reverse != 0u ? 0.0f : 1.0f, 0.0f, 0.0f);
+}
 
 /** How to read the device depth of a perspective projection.
  *  near_m   [1e-6,1e9]     distance of the near plane
@@ -1855,7 +1861,7 @@ HDRP_FN hdrp_depth_params hdrp_depth_params_perspective(float near_m, float far_
     hdrp_depth_params p;
     float k = far_m >= HDRP_DEPTH_INFINITE ? 0.0f : near_m / hdrp_max(far_m, near_m);
     p.ratio = hdrp_v4_make(0.0f, near_m, 1.0f - k, k);
-    p.device = hdrp_v2_make(reverse != 0u ? 1.0f : -1.0f, reverse != 0u ? 0.0f : 1.0f);
+    p.nearness = hdrp_i_depth_nearness(reverse);
     return p;
 }
 
@@ -1872,7 +1878,7 @@ HDRP_FN hdrp_depth_params hdrp_depth_params_orthographic(float near_m, float far
 {
     hdrp_depth_params p;
     p.ratio = hdrp_v4_make(near_m - far_m, far_m, 0.0f, 1.0f);
-    p.device = hdrp_v2_make(reverse != 0u ? 1.0f : -1.0f, reverse != 0u ? 0.0f : 1.0f);
+    p.nearness = hdrp_i_depth_nearness(reverse);
     return p;
 }
 
@@ -1882,12 +1888,12 @@ HDRP_FN hdrp_depth_params hdrp_depth_params_orthographic(float near_m, float far
  *  returns       [0,HDRP_DEPTH_INFINITE]
  *  edges         HDRP_DEPTH_INFINITE at the far plane of an infinite projection; a device depth
  *                outside [0,1] counts as the nearer end, NaN as 0
- *  error         <= 4e-7 relative against the projection matrix in double, of reverse depth of any
- *                range  @accuracy view_depth
+ *  error         <= 4e-7 relative against the projection matrix in double, however far apart near
+ *                and far are; orthographic to the far distance  @accuracy view_depth
  *  source        inverse of the projection */
 HDRP_FN float hdrp_view_depth(hdrp_depth_params params, float device_depth)
 {
-    float e = hdrp_saturate(device_depth) * params.device.x + params.device.y;
+    float e = hdrp_saturate(device_depth) * params.nearness.x + params.nearness.y;
     float z = (params.ratio.x * e + params.ratio.y) /
               hdrp_max(params.ratio.z * e + params.ratio.w, HDRP_FLT_MIN);
     return hdrp_clamp(z, 0.0f, HDRP_DEPTH_INFINITE);
@@ -1897,15 +1903,18 @@ HDRP_FN float hdrp_view_depth(hdrp_depth_params params, float device_depth)
  *  params   valid
  *  z_view   any    m
  *  returns  [0,1]
- *  edges    the near plane's in front of it, the far plane's behind it and for NaN
- *  error    <= 4e-7 absolute, as a share of the device depth of reverse projections  @accuracy device_depth
+ *  edges    the near plane's in front of it, the far plane's behind it and for NaN; an infinite far
+ *           plane counts as at HDRP_DEPTH_INFINITE here
+ *  error    <= 4e-7 relative, of a reverse depth above near / far; orthographic absolute
+ *           @accuracy device_depth
+ *  error    <= 2e-7 absolute, of forward depth  @accuracy device_depth_forward
  *  source   the projection */
 HDRP_FN float hdrp_device_depth(hdrp_depth_params params, float z_view)
 {
     float z = z_view >= 0.0f ? hdrp_min(z_view, HDRP_DEPTH_INFINITE) : HDRP_DEPTH_INFINITE;
     float e = (params.ratio.y - params.ratio.w * z) / (params.ratio.z * z - params.ratio.x);
     e = z_view < 0.0f ? 1.0f : hdrp_saturate(e);
-    return (e - params.device.y) * params.device.x;
+    return (e - params.nearness.y) * params.nearness.x;
 }
 
 /* >>algorithm layer: results, C and C++ only */

@@ -2,6 +2,8 @@
  * SPDX-License-Identifier: MIT */
 #include "cull_counts.h"
 
+#include "cull_reference.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -10,6 +12,8 @@
 
 /* Pixels times lights that are looked at for the visits. */
 #define VISITS_MAX 60e6
+/* Tiles that the exact count looks at, about: a pair of it takes microseconds. */
+#define COMPARED_TILES 200u
 
 static void* allocate(size_t count, size_t size)
 {
@@ -84,6 +88,7 @@ void cull_truth_make(cull_truth* truth, const cull_scene* scene, const float* te
     memset(truth, 0, sizeof *truth);
     truth->scene = scene;
     truth->texels = texels;
+    truth->mix = mix;
     truth->light_count = light_count;
     truth->lights = allocate(light_count, sizeof *truth->lights);
     for (uint32_t i = 0u; i < light_count; ++i) {
@@ -151,20 +156,93 @@ static uint64_t lights_of_tile(const cull_truth* truth, uint32_t x0, uint32_t y0
     return pairs;
 }
 
-static uint64_t lights_of_tiles(const cull_truth* truth, hdrp_cull_grid grid)
+/* Cells of a tile, and lights that reach them. */
+static uint64_t lights_of_cells(const cull_truth* truth, const ref_body* bodies,
+                                const hdrp_cull_lists* lists, uint32_t tile)
 {
-    double(*places)[3] = allocate((size_t)grid.tiles.x * grid.tiles.y, sizeof *places);
-    uint32_t width = truth->scene->width_px, height = truth->scene->height_px;
-    uint64_t pairs = 0u;
-    for (uint32_t y = 0u; y < height; y += grid.tiles.y) {
-        for (uint32_t x = 0u; x < width; x += grid.tiles.x) {
-            uint32_t x1 = x + grid.tiles.x, y1 = y + grid.tiles.y;
-            pairs += lights_of_tile(truth, x, y, x1 < width ? x1 : width, y1 < height ? y1 : height,
-                                    places);
+    float lo[HDRP_CULL_SLICES_MAX], hi[HDRP_CULL_SLICES_MAX];
+    bool reached[HDRP_CULL_SLICES_MAX];
+    hdrp_cull_grid g = lists->grid;
+    uint32_t x0 = tile % g.tiles.z * g.tiles.x, y0 = tile / g.tiles.z * g.tiles.y;
+    uint32_t x1 = x0 + g.tiles.x, y1 = y0 + g.tiles.y;
+    uint32_t width = lists->desc.width_px, height = lists->desc.height_px;
+    ref_cell cell = ref_cell_of_pixels(&lists->camera, x0, y0, x1 < width ? x1 : width,
+                                       y1 < height ? y1 : height, width, height);
+    uint64_t pairs = 0u, unknown = 0u;
+    if (g.cells.x == 1u) { /* what is between the nearest and the farthest surface */
+        lo[0] = lists->tiles[tile].x;
+        hi[0] = lists->tiles[tile].y;
+        cell.z0 = (ref_real)lo[0];
+        cell.z1 = (ref_real)hi[0];
+    } else {
+        ref_slices(g, lists->tiles[tile].z, lists->camera.eye_near.w, lists->camera.right_far.w, lo,
+                   hi);
+    }
+    for (uint32_t i = 0u; i < truth->light_count && (g.cells.x > 1u || lo[0] <= hi[0]); ++i) {
+        if (!ref_outside_a_side(&bodies[i], &cell)) {
+            pairs += ref_reach(&bodies[i], &cell, lo, hi, g.cells.x, reached, &unknown);
         }
     }
+    return pairs;
+}
+
+static uint64_t lights_of_pixels(const cull_truth* truth, const hdrp_cull_lists* lists,
+                                 uint32_t tile, double (*places)[3])
+{
+    hdrp_cull_grid g = lists->grid;
+    uint32_t x0 = tile % g.tiles.z * g.tiles.x, y0 = tile / g.tiles.z * g.tiles.y;
+    uint32_t x1 = x0 + g.tiles.x, y1 = y0 + g.tiles.y;
+    uint32_t width = lists->desc.width_px, height = lists->desc.height_px;
+    return lights_of_tile(truth, x0, y0, x1 < width ? x1 : width, y1 < height ? y1 : height,
+                          places);
+}
+
+/* Whether the exact count looks at a tile: at all of coarse grids, and at some of others. */
+static bool is_compared(const hdrp_cull_lists* lists, uint32_t tile)
+{
+    uint32_t step = lists->grid.tiles.z * lists->grid.tiles.w / COMPARED_TILES + 1u;
+    return hdrp_hash1(tile) % step == 0u;
+}
+
+static uint64_t count_exact(const cull_truth* truth, const hdrp_cull_lists* lists)
+{
+    hdrp_cull_grid g = lists->grid;
+    ref_body* bodies = allocate(truth->light_count, sizeof *bodies);
+    double(*places)[3] = allocate((size_t)g.tiles.x * g.tiles.y, sizeof *places);
+    uint64_t pairs = 0u;
+    for (uint32_t i = 0u; i < truth->light_count; ++i) {
+        hdrp_light light = cull_scene_light(truth->scene, truth->mix, i);
+        bodies[i] = ref_body_of_light(&light, &lists->camera);
+    }
+    for (uint32_t tile = 0u; tile < g.tiles.z * g.tiles.w; ++tile) {
+        if (is_compared(lists, tile)) {
+            pairs += lists->desc.flags & HDRP_CULL_PIXELS
+                         ? lights_of_pixels(truth, lists, tile, places)
+                         : lights_of_cells(truth, bodies, lists, tile);
+        }
+    }
+    free(bodies);
     free(places);
     return pairs;
+}
+
+void cull_counts_exact(cull_counts* counts, cull_truth* truth, const hdrp_cull_lists* lists)
+{
+    bool for_pixels = (lists->desc.flags & HDRP_CULL_PIXELS) != 0u;
+    cull_exact* e = truth->exact;
+    while (e < truth->exact + truth->exact_count &&
+           (e->tile_px != lists->grid.tiles.x || e->slices != lists->grid.cells.x ||
+            e->for_pixels != for_pixels)) {
+        ++e;
+    }
+    if (e == truth->exact + truth->exact_count) {
+        e->tile_px = lists->grid.tiles.x;
+        e->slices = lists->grid.cells.x;
+        e->for_pixels = for_pixels;
+        e->pairs = count_exact(truth, lists);
+        truth->exact_count += truth->exact_count + 1u < CULL_EXACT_MAX;
+    }
+    counts->exact_pairs = e->pairs;
 }
 
 /* ---- lists ------------------------------------------------------------------------------------*/
@@ -181,9 +259,17 @@ static size_t cell_of_pixel(const cull_truth* truth, const hdrp_cull_lists* list
 void cull_counts_lists(cull_counts* counts, const cull_truth* truth, const hdrp_cull_lists* lists)
 {
     hdrp_cull_stats stats;
+    uint32_t slices = lists->grid.cells.x;
     memset(&stats, 0, sizeof stats);
     hdrp_cull_count(lists, &stats);
     counts->pairs = stats.entries;
+    counts->compared_pairs = 0u;
+    for (size_t c = 0u; c < (size_t)lists->grid.tiles.z * lists->grid.tiles.w * slices; ++c) {
+        if (is_compared(lists, (uint32_t)(c / slices))) {
+            counts->compared_pairs +=
+                hdrp_cull_last(lists->cells[c], 3u) - hdrp_cull_first(lists->cells[c], 0u);
+        }
+    }
     counts->visits = counts->true_visits = 0u;
     for (uint32_t p = 0u; p < truth->pixel_count; ++p) {
         uint32_t x = truth->pixel_x[p], y = truth->pixel_y[p];
@@ -192,18 +278,6 @@ void cull_counts_lists(cull_counts* counts, const cull_truth* truth, const hdrp_
             counts->visits += hdrp_cull_entry_covers(lists->grid, lists->entries[i], x, y);
         }
         counts->true_visits += truth->reached[p];
-    }
-}
-
-void cull_counts_exact(cull_counts* counts, cull_truth* truth, const hdrp_cull_lists* lists,
-                       const hdrp_cull_shape* shapes)
-{
-    (void)shapes;
-    if (lists->desc.flags & HDRP_CULL_PIXELS) {
-        if (truth->tile_pairs == 0u) {
-            truth->tile_pairs = lights_of_tiles(truth, lists->grid);
-        }
-        counts->exact_pairs = truth->tile_pairs;
     }
 }
 
@@ -286,7 +360,7 @@ void cull_naive_build(cull_naive* naive, const hdrp_cull_set* set)
 void cull_counts_naive(cull_counts* counts, const cull_truth* truth, const cull_naive* naive,
                        const hdrp_cull_lists* lists)
 {
-    counts->pairs = naive->begin[naive->cell_count];
+    counts->pairs = counts->compared_pairs = naive->begin[naive->cell_count];
     counts->visits = counts->true_visits = 0u;
     for (uint32_t p = 0u; p < truth->pixel_count; ++p) {
         size_t cell = cell_of_pixel(truth, lists, truth->pixel_x[p], truth->pixel_y[p]);

@@ -37,6 +37,7 @@ DEPENDENCIES = {
     "pack": "math brdf",
     "area": "math light",
     "cull_volume": "math light",
+    "cull_variant": "math",
     "cull_blocker": "math light cull_volume",
     "cull": "math light cull_volume cull_blocker cull_variant",
     "vol": "math light cull",

@@ -37,6 +37,9 @@ void rd_layers_row(const rd_sub_frame* s, rd_worker* w, int y);
 void rd_resolve_row(const rd_sub_frame* s, rd_worker* w, int y);
 void rd_reference_row(const rd_sub_frame* s, rd_worker* w, int y);
 
+/* The lights of all tiles and clusters, as soon as the visible surfaces are known. */
+void rd_lists_build(const rd_sub_frame* s);
+
 void rd_layer_list_free(struct rd_layer_list* list);
 
 static inline size_t rd_pixel(const rd_sub_frame* s, int x, int y)
@@ -95,6 +98,19 @@ static inline void rd_evaluate(const rd_sub_frame* s, int x, int y, const rd_ray
 static inline bool rd_has(const rd_sub_frame* s, uint32_t feature)
 {
     return (s->r->options->features & feature) != 0;
+}
+
+/* What the light loop walks; NULL: it visits all lights. */
+static inline const hdrp_cull_lists* rd_opaque_lists(const rd_sub_frame* s)
+{
+    const rd_lists* l = &s->r->lists;
+    return l->ready && rd_has(s, RD_FEATURE_LISTS) ? &l->tiles.lists : NULL;
+}
+
+static inline const hdrp_cull_lists* rd_layer_lists(const rd_sub_frame* s)
+{
+    const rd_lists* l = &s->r->lists;
+    return l->ready && rd_has(s, RD_FEATURE_LISTS) ? &l->clusters.lists : NULL;
 }
 
 #endif

@@ -22,13 +22,13 @@ void rd_gbuffer_free(rd_gbuffer* g)
 }
 
 hdrp_pack_gbuffer_texel rd_gbuffer_encode(hdrp_brdf_data data, hdrp_v3 emission_nits,
-                                          float exposure)
+                                          hdrp_u32 light_layers, float exposure)
 {
     hdrp_pack_gbuffer_extra e;
     e.emissive = hdrp_v3_scale(emission_nits, exposure);
     e.static_diffuse = hdrp_v3_splat(0.0f);
     e.specular_occlusion_data = hdrp_v2_make(0.0f, 0.0f);
-    e.light_layers = 255u;
+    e.light_layers = light_layers;
     e.shadow_masks = hdrp_v4_make(1.0f, 1.0f, 1.0f, 1.0f);
     e.targets = RD_GBUFFER_TARGETS;
     return hdrp_pack_gbuffer_texel_from_targets(hdrp_pack_gbuffer_encode(data, e));
@@ -47,6 +47,13 @@ hdrp_brdf_data rd_gbuffer_decode(hdrp_pack_gbuffer_texel texel, const rd_scene* 
 hdrp_v3 rd_gbuffer_decode_emission(hdrp_pack_gbuffer_texel texel, float exposure)
 {
     return hdrp_v3_scale(hdrp_pack_rgb_from_r11g11b10f(texel.rt3), 1.0f / exposure);
+}
+
+hdrp_u32 rd_gbuffer_decode_light_layers(hdrp_pack_gbuffer_texel texel)
+{
+    return hdrp_pack_gbuffer_decode_extra(hdrp_pack_gbuffer_targets_from_texel(texel),
+                                          RD_GBUFFER_TARGETS)
+        .light_layers;
 }
 
 hdrp_pack_gbuffer_texel rd_gbuffer_encode_normal(hdrp_brdf_data data)

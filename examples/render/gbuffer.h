@@ -30,10 +30,11 @@ void rd_gbuffer_free(rd_gbuffer* g);
 
 /* Emission in nits; the texel holds it times the exposure, which keeps it inside its range. */
 hdrp_pack_gbuffer_texel rd_gbuffer_encode(hdrp_brdf_data data, hdrp_v3 emission_nits,
-                                          float exposure);
+                                          hdrp_u32 light_layers, float exposure);
 /* The scene has the diffusion profiles, of which texels hold the index. */
 hdrp_brdf_data rd_gbuffer_decode(hdrp_pack_gbuffer_texel texel, const rd_scene* scene);
 hdrp_v3 rd_gbuffer_decode_emission(hdrp_pack_gbuffer_texel texel, float exposure);
+hdrp_u32 rd_gbuffer_decode_light_layers(hdrp_pack_gbuffer_texel texel);
 
 /* Only what passes before lighting read of a forward material: normal and roughness. */
 hdrp_pack_gbuffer_texel rd_gbuffer_encode_normal(hdrp_brdf_data data);

@@ -5,6 +5,7 @@
 
 #include "environment.h"
 #include "hdrp_brdf.h"
+#include "hdrp_cull.h"
 #include "lights.h"
 #include "surface.h"
 #include "trace.h"
@@ -63,6 +64,9 @@ typedef struct rd_shade_point {
     hdrp_v3 view;     /* unit, towards the viewer */
     float visibility; /* [0,1] of the surroundings, beside data.ambient_occlusion */
     uint32_t hash;    /* of the pixel */
+    hdrp_u32 layers;  /* light layers */
+    uint32_t x, y;    /* pixel */
+    uint32_t first_entry, last_entry; /* of lists: the lights that may reach it */
 } rd_shade_point;
 
 typedef struct rd_shaded {
@@ -77,6 +81,8 @@ typedef struct rd_shaded {
 
 typedef struct rd_shade_counts {
     uint64_t shadow_rays;
+    /* Pairs of a point and a light: visited, and in the range of the light. */
+    uint64_t visited, in_range;
     uint64_t samples[RD_SHADE_VARIANTS];
     /* Of calls whose points all took the same variant. */
     uint64_t timed_samples[RD_SHADE_VARIANTS];
@@ -85,8 +91,9 @@ typedef struct rd_shade_counts {
 
 const char* rd_shade_variant_name(int variant);
 
-/* At most RD_SHADE_MAX points. `index` counts the samples of a pixel. */
-void rd_shade(const rd_lighting* l, const rd_shade_point* points, uint32_t count, uint32_t index,
-              rd_shaded* out, rd_shade_counts* counts);
+/* At most RD_SHADE_MAX points. `lists` NULL: they visit all lights, and their entries mean nothing.
+ * `index` counts the samples of a pixel. */
+void rd_shade(const rd_lighting* l, const hdrp_cull_lists* lists, const rd_shade_point* points,
+              uint32_t count, uint32_t index, rd_shaded* out, rd_shade_counts* counts);
 
 #endif

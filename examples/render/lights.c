@@ -7,7 +7,7 @@
 /* Width of the soft edge of pyramids and boxes, as a share of their size. */
 #define SOFT_EDGE 0.15f
 
-hdrp_light rd_light_record(const rd_light* l)
+static hdrp_light unlayered_record(const rd_light* l)
 {
     hdrp_v3 color = hdrp_v3_scale(l->color, l->intensity);
     float range = l->range_m > 0.0f ? l->range_m : HDRP_LIGHT_RANGE_INFINITE;
@@ -32,6 +32,14 @@ hdrp_light rd_light_record(const rd_light* l)
         break;
     }
     r.forward_radius.w = l->radius_m;
+    return r;
+}
+
+hdrp_light rd_light_record(const rd_light* l)
+{
+    hdrp_light r = unlayered_record(l);
+    r.bits.x |= l->shadowless ? 0u : HDRP_LIGHT_FEATURE_SHADOW;
+    r.bits.y = l->light_layers ? l->light_layers : HDRP_LIGHT_LAYERS_ALL;
     return r;
 }
 
@@ -67,8 +75,10 @@ static hdrp_light generated(const rd_lights_desc* d, uint32_t i)
     hdrp_v3 color = hdrp_v3_lerp(hue(random_of(d->seed, i, 3u)), hdrp_v3_splat(1.0f), 0.25f);
     /* The mean of candela / d^2 over a ball of radius R is 3 candela / R^2. */
     float candela = d->generated_lux * range * range / (8.0f * 3.0f);
-    return hdrp_light_point(hdrp_v3_add(b->low, hdrp_v3_mul(at, box)),
-                            hdrp_v3_scale(color, candela / hdrp_luminance(color)), range);
+    hdrp_light l = hdrp_light_point(hdrp_v3_add(b->low, hdrp_v3_mul(at, box)),
+                                    hdrp_v3_scale(color, candela / hdrp_luminance(color)), range);
+    l.bits.x |= HDRP_LIGHT_FEATURE_SHADOW;
+    return l;
 }
 
 /* >>the list */
@@ -83,7 +93,8 @@ bool rd_lights_make(rd_lights* lights, const rd_lights_desc* d)
         return false;
     }
     if (d->sun) {
-        lights->items[count++] = *d->sun;
+        lights->items[count] = *d->sun;
+        lights->items[count++].bits.x |= HDRP_LIGHT_FEATURE_SHADOW;
     }
     for (int i = 0; i < d->scene->light_count; ++i) {
         lights->items[count++] = rd_light_record(&d->scene->lights[i]);

@@ -33,6 +33,7 @@ static const struct {
     {"environment", RD_FEATURE_ENVIRONMENT},
     {"sky", RD_FEATURE_SKY},
     {"specular_aa", RD_FEATURE_SPECULAR_AA},
+    {"lists", RD_FEATURE_LISTS},
     {"all", RD_FEATURE_ALL},
 };
 

@@ -120,7 +120,7 @@ static void finish(const rd_sub_frame* s, layer* l, const rd_shade_point* p,
 
 static void shade_batch(const rd_sub_frame* s, rd_worker* w, batch* b)
 {
-    rd_shade(s->r->lighting, w->points, b->count, s->index, w->shaded, &w->shade);
+    rd_shade(s->r->lighting, rd_layer_lists(s), w->points, b->count, s->index, w->shaded, &w->shade);
     for (uint32_t i = 0; i < b->count; ++i) {
         hdrp_v3 light = rd_lit_part(s, &w->shaded[i], b->emission[i]);
         finish(s, &w->list->items[b->first + i], &w->points[i], &w->shaded[i], light);
@@ -146,6 +146,10 @@ static void add_surface(const rd_sub_frame* s, rd_worker* w, batch* b, const rd_
     p->view = surface->view;
     p->visibility = 1.0f;
     p->hash = rd_pixel_hash(s, x, y);
+    p->layers = surface->light_layers;
+    if (rd_layer_lists(s)) {
+        rd_lists_find_cluster(&s->r->lists, x, y, p);
+    }
     b->emission[b->count] = rd_emission_nits(surface, s->r->exposure);
     if (++b->count == RD_RUN) {
         shade_batch(s, w, b);

@@ -14,7 +14,8 @@ static void store(const rd_sub_frame* s, rd_worker* w, size_t px, const rd_surfa
     r->gbuffer.geometric_normals[px] = surface->geometric_normal;
     if (deferred) {
         r->gbuffer.kinds[px] = RD_PIXEL_DEFERRED;
-        r->gbuffer.texels[px] = rd_gbuffer_encode(data, surface->emission_nits, r->exposure);
+        r->gbuffer.texels[px] = 
+            rd_gbuffer_encode(data, surface->emission_nits, surface->light_layers, r->exposure);
         ++w->counts.deferred_samples;
     } else {
         r->gbuffer.kinds[px] = RD_PIXEL_FORWARD;
@@ -55,11 +56,14 @@ static void set_place(const rd_sub_frame* s, rd_shade_point* p, const rd_ray* ra
     p->view = hdrp_v3_neg(ray->direction);
     p->visibility = s->r->visibility[1][px];
     p->hash = rd_pixel_hash(s, x, y);
+    if (rd_opaque_lists(s)) {
+        rd_lists_find_tile(&s->r->lists, x, y, p);
+    }
 }
 
 static void shade_batch(const rd_sub_frame* s, rd_worker* w, const batch* b)
 {
-    rd_shade(s->r->lighting, w->points, b->count, s->index, w->shaded, &w->shade);
+    rd_shade(s->r->lighting, rd_opaque_lists(s), w->points, b->count, s->index, w->shaded, &w->shade);
     for (uint32_t i = 0; i < b->count; ++i) {
         s->r->lit[b->pixel[i]] = rd_lit_part(s, &w->shaded[i], b->emission[i]);
     }
@@ -78,6 +82,7 @@ static void deferred_run(const rd_sub_frame* s, rd_worker* w, int x0, int x1, in
         }
         w->points[b.count].data = rd_gbuffer_decode(g->texels[px], s->r->scene);
         set_place(s, &w->points[b.count], &ray, x, y);
+        w->points[b.count].layers = rd_gbuffer_decode_light_layers(g->texels[px]);
         b.emission[b.count] = rd_gbuffer_decode_emission(g->texels[px], s->r->exposure);
         b.pixel[b.count++] = px;
     }
@@ -101,6 +106,7 @@ static void forward_run(const rd_sub_frame* s, rd_worker* w, int x0, int x1, int
         rd_evaluate(s, x, y, &ray, &s->r->hits[px], &surface);
         w->points[b.count].data = rd_engine_data(&surface, s->r->options->features);
         set_place(s, &w->points[b.count], &ray, x, y);
+        w->points[b.count].layers = surface.light_layers;
         b.emission[b.count] = rd_emission_nits(&surface, s->r->exposure);
         b.pixel[b.count++] = px;
     }

@@ -25,6 +25,7 @@ typedef struct path {
     rd_ray ray;
     hdrp_v3 throughput, radiance;
     hdrp_v3 last;              /* where the direction was chosen */
+    hdrp_u32 last_layers;      /* of the surface there */
     float travelled_m;         /* from there to the origin of the ray */
     float pdf;                 /* of the direction [1/sr] */
     float light_weight;        /* sum over lights there, see weight_of */
@@ -87,10 +88,11 @@ static void add_light(path* p, hdrp_v3 nits, float weight)
 /* >>lights
  * One is chosen in proportion to its unshadowed illuminance. */
 
-static float weight_of(const hdrp_light* light, hdrp_v3 position, hdrp_light_incident* in)
+static float weight_of(const hdrp_light* light, hdrp_v3 position, hdrp_u32 layers,
+                       hdrp_light_incident* in)
 {
     *in = hdrp_light_eval(*light, position);
-    return hdrp_luminance(in->illuminance);
+    return hdrp_light_affects(*light, layers) ? hdrp_luminance(in->illuminance) : 0.0f;
 }
 
 static bool lights_on(const wave* v)
@@ -99,7 +101,7 @@ static bool lights_on(const wave* v)
 }
 
 /* The chosen light, or -1 where all is dark; its weight, and that of all. */
-static int choose_light(const wave* v, path* p, hdrp_v3 position, hdrp_light_incident* in,
+static int choose_light(const wave* v, path* p, const rd_surface* surface, hdrp_light_incident* in,
                         float* chosen)
 {
     const rd_lights* l = &v->lighting->lights;
@@ -107,7 +109,7 @@ static int choose_light(const wave* v, path* p, hdrp_v3 position, hdrp_light_inc
     p->light_weight = 0.0f;
     for (uint32_t i = 0; lights_on(v) && i < l->count; ++i) {
         hdrp_light_incident candidate;
-        float w = weight_of(&l->items[i], position, &candidate);
+        float w = weight_of(&l->items[i], surface->position, surface->light_layers, &candidate);
         if (w > 0.0f) {
             p->light_weight += w;
             if (random_number(p) * p->light_weight <= w) {
@@ -164,7 +166,7 @@ static void sample_lights(wave* v, uint32_t index, const vertex* x)
     path* p = &v->paths[index];
     hdrp_light_incident in;
     float weight = 0.0f, sine, k, cosine;
-    int i = choose_light(v, p, x->surface.position, &in, &weight);
+    int i = choose_light(v, p, &x->surface, &in, &weight);
     const hdrp_light* light;
     rd_ray ray;
     hdrp_v3 l;
@@ -195,7 +197,7 @@ static void meet_lights(const wave* v, path* p, float t)
         if (!(l->items[i].forward_radius.w > 0.0f)) {
             continue;
         }
-        w = weight_of(&l->items[i], p->last, &in);
+        w = weight_of(&l->items[i], p->last, p->last_layers, &in);
         sine = rd_light_sine(&l->items[i], &in);
         cosine = hdrp_v3_dot(p->ray.direction, in.l);
         at = rd_light_shadow_end(&l->items[i], &in);
@@ -319,6 +321,7 @@ static void scatter(wave* v, uint32_t index, const vertex* x)
     p->from_eye = false;
     p->sampled = true;
     p->last = x->surface.position;
+    p->last_layers = x->surface.light_layers;
     if (!(p->pdf > 0.0f) || below <= 0.0f) {
         p->alive = false;
         return;

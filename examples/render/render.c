@@ -30,6 +30,12 @@ static bool allocate_frame(rd_renderer* r, size_t pixels)
            rd_pyramid_begin(&r->pyramid, r->lit, r->width, r->height);
 }
 
+static float size_of(const rd_scene* scene)
+{
+    hdrp_v3 d = hdrp_v3_sub(scene->bounds.high, scene->bounds.low);
+    return scene->bounds.low.x <= scene->bounds.high.x ? hdrp_v3_length(d) : 0.0f;
+}
+
 bool rd_renderer_begin(rd_renderer* r, const rd_renderer_desc* d, rd_report* report)
 {
     const rd_options* o = d->options;
@@ -47,7 +53,8 @@ bool rd_renderer_begin(rd_renderer* r, const rd_renderer_desc* d, rd_report* rep
     r->spp = o->spp ? o->spp : default_spp(o->quality);
     r->hits = (rd_hit*)allocate(pixels, sizeof *r->hits);
     r->film = (float*)allocate(pixels, 4 * sizeof *r->film);
-    if (!r->hits || !r->film || !allocate_frame(r, pixels)) {
+    if (!r->hits || !r->film || !allocate_frame(r, pixels) ||
+        !rd_lists_begin(&r->lists, &r->lighting->lights, r->width, r->height, size_of(r->scene))) {
         rd_renderer_end(r);
         return rd_fail(report, "image", "out of memory");
     }
@@ -58,6 +65,7 @@ void rd_renderer_end(rd_renderer* r)
 {
     rd_pyramid_end(&r->pyramid);
     rd_gbuffer_free(&r->gbuffer);
+    rd_lists_end(&r->lists);
     free(r->visibility[0]);
     free(r->visibility[1]);
     free(r->lit);
@@ -90,6 +98,8 @@ static void add_counts(rd_render_counts* sum, const rd_worker* w)
         sum->shade.timed_samples[i] += w->shade.timed_samples[i];
         sum->shade.timed_ms[i] += w->shade.timed_ms[i];
     }
+    sum->shade.visited += w->shade.visited;
+    sum->shade.in_range += w->shade.in_range;
     sum->occlusion_rays += w->counts.occlusion_rays;
     sum->path_rays += w->counts.path_rays;
     sum->deferred_samples += w->counts.deferred_samples;
@@ -180,6 +190,9 @@ static void real_time(const rd_sub_frame* s, schedule* t)
         return;
     }
     run_pass(s, "GBuffer", rd_gbuffer_row, t);
+    if (rd_has(s, RD_FEATURE_LISTS) && rd_has(s, RD_FEATURE_LIGHTS)) {
+        rd_lists_build(s);
+    }
     occlusion(s, t);
     if (stage == RD_STAGE_GBUFFER) {
         run_pass(s, "view", rd_frame_view_row, t);

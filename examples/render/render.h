@@ -5,6 +5,7 @@
 #include "camera.h"
 #include "gbuffer.h"
 #include "lighting.h"
+#include "lists.h"
 #include "options.h"
 #include "progress.h"
 #include "pyramid.h"
@@ -34,6 +35,7 @@ typedef struct rd_renderer {
     rd_hit* hits;
     rd_gbuffer gbuffer;
     float* visibility[2]; /* of the surroundings: as traced, and blurred */
+    rd_lists lists;       /* of lights */
     hdrp_v3* lit;         /* opaque surfaces and the sky [nits] */
     rd_pyramid pyramid;   /* of lit, for what is seen through rough glass */
     float* film;          /* RGBA; A is the coverage. Sums, and means once rd_render has returned */

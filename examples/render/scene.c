@@ -119,6 +119,11 @@ void rd_mesh_free(rd_mesh* mesh)
     memset(mesh, 0, sizeof *mesh);
 }
 
+uint32_t rd_mesh_light_layers(const rd_mesh* mesh)
+{
+    return mesh->light_layers ? mesh->light_layers & 255u : 255u;
+}
+
 static void turn_around(rd_mesh* mesh)
 {
     for (uint32_t i = 0; i < mesh->triangle_count; ++i) {

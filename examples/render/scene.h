@@ -90,6 +90,7 @@ typedef struct rd_mesh {
     int material;
     uint32_t vertex_count, triangle_count;
     float scale; /* metres for one unit of the file: the thickness of volumes grows with it */
+    uint32_t light_layers; /* of its surfaces, 8 bits; 0: all */
     hdrp_v3* positions; /* one element of padding follows: Embree reads 16 bytes at a time */
     hdrp_v3* normals;   /* unit; NULL: flat */
     hdrp_v4* tangents;  /* unit, w is the sign of the bitangent */
@@ -117,6 +118,8 @@ typedef struct rd_light {
     float half_width, half_height;          /* pyramid: at distance 1; box: in metres */
     float radius_m;                         /* size of the source for soft shadows; 0: a point */
     float angular_radius_rad;               /* the same of a directional light */
+    uint32_t light_layers;                  /* that it lights; 0: all */
+    bool shadowless;
 } rd_light;
 
 typedef struct rd_scene_camera {
@@ -179,6 +182,8 @@ bool rd_mesh_allocate(rd_mesh* mesh, uint32_t vertices, uint32_t triangles, bool
 /* Moves a mesh to world space; a mirroring transform turns the triangles around. */
 void rd_mesh_transform(rd_mesh* mesh, rd_affine world_from_object);
 void rd_mesh_free(rd_mesh* mesh);
+/* As a GBuffer holds them. */
+uint32_t rd_mesh_light_layers(const rd_mesh* mesh);
 
 /* From then on tangents come from the uv. */
 void rd_scene_drop_tangents(rd_scene* scene);

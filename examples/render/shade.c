@@ -94,13 +94,13 @@ const char* rd_shade_variant_name(int i)
 
 typedef struct run {
     const rd_lighting* lighting;
+    const hdrp_cull_lists* lists;
     const rd_shade_point* points;
     uint32_t count, index;
     rd_shaded* out;
     rd_shade_counts* counts;
     const variant* variants[RD_SHADE_MAX];
     hdrp_brdf_lit_view views[RD_SHADE_MAX];
-    rd_bounds bounds;
 } run;
 
 static rd_bounds bounds_of(const rd_shade_point* p, uint32_t count)
@@ -128,7 +128,6 @@ static void begin(run* r)
         r->out[i].transmitted_direction = hdrp_v3_neg(p->view);
         r->out[i].transmitted_perceptual_roughness = 0.0f;
     }
-    r->bounds = bounds_of(r->points, r->count);
 }
 
 /* >>lights */
@@ -174,19 +173,20 @@ static bool is_lit(const rd_shade_point* p, const hdrp_light_incident* in)
 {
     bool crosses =
         (p->data.features & (HDRP_BRDF_FEATURE_REFRACTION | HDRP_BRDF_FEATURE_TRANSMISSION)) != 0u;
-    return hdrp_v3_max_component(in->illuminance) > 0.0f &&
-           (crosses || hdrp_v3_dot(p->data.normal, in->l) > 0.0f ||
-            hdrp_v3_dot(p->data.coat_normal, in->l) > 0.0f);
+    return crosses || hdrp_v3_dot(p->data.normal, in->l) > 0.0f ||
+           hdrp_v3_dot(p->data.coat_normal, in->l) > 0.0f;
 }
 
-static void find_reached(const run* r, uint32_t light, reached* out)
+/* Appends those of some points. */
+static void find_reached(const run* r, uint32_t light, uint32_t first, uint32_t end, reached* out)
 {
     const hdrp_light* item = &r->lighting->lights.items[light];
-    out->count = 0;
-    for (uint32_t i = 0; i < r->count; ++i) {
+    for (uint32_t i = first; i < end; ++i) {
         const rd_shade_point* p = &r->points[i];
         hdrp_light_incident in = hdrp_light_eval(*item, p->position);
-        if (is_lit(p, &in)) {
+        bool in_range = hdrp_v3_max_component(in.illuminance) > 0.0f;
+        r->counts->in_range += in_range;
+        if (in_range && hdrp_light_affects(*item, p->layers) && is_lit(p, &in)) {
             float sine = rd_light_sine(item, &in);
             out->point[out->count] = i;
             out->incident[out->count] = in;
@@ -195,11 +195,13 @@ static void find_reached(const run* r, uint32_t light, reached* out)
             ++out->count;
         }
     }
+    r->counts->visited += end - first;
 }
 
-static void trace_shadows(const run* r, reached* l)
+static void trace_shadows(const run* r, uint32_t light, reached* l)
 {
-    if (!(r->lighting->features & RD_FEATURE_SHADOWS)) {
+    bool casts = (r->lighting->lights.items[light].bits.x & HDRP_LIGHT_FEATURE_SHADOW) != 0u;
+    if (!casts || !(r->lighting->features & RD_FEATURE_SHADOWS)) {
         for (uint32_t k = 0; k < l->count; ++k) {
             l->transmittance[k] = hdrp_v3_splat(1.0f);
         }
@@ -209,31 +211,100 @@ static void trace_shadows(const run* r, reached* l)
     r->counts->shadow_rays += l->count;
 }
 
-static void add_light(const run* r, uint32_t light)
+static void add_light(const run* r, uint32_t light, reached* l)
 {
-    reached l;
-    find_reached(r, light, &l);
-    trace_shadows(r, &l);
-    for (uint32_t k = 0; k < l.count; ++k) {
-        uint32_t i = l.point[k];
-        hdrp_v3 lux = hdrp_v3_mul(l.incident[k].illuminance, l.transmittance[k]);
+    trace_shadows(r, light, l);
+    for (uint32_t k = 0; k < l->count; ++k) {
+        uint32_t i = l->point[k];
+        hdrp_v3 lux = hdrp_v3_mul(l->incident[k].illuminance, l->transmittance[k]);
         hdrp_brdf_lit lit;
         if (!(hdrp_v3_max_component(lux) > 0.0f)) {
             continue;
         }
-        lit = r->variants[i]->eval(&r->points[i], &r->views[i], l.incident[k].l, l.variance[k]);
+        lit = r->variants[i]->eval(&r->points[i], &r->views[i], l->incident[k].l, l->variance[k]);
         r->out[i].diffuse = hdrp_v3_add(r->out[i].diffuse, hdrp_v3_mul(lux, lit.diffuse));
         r->out[i].specular = hdrp_v3_add(r->out[i].specular, hdrp_v3_mul(lux, lit.specular));
     }
 }
 
-static void add_lights(const run* r)
+static void add_all_lights(const run* r)
 {
     const rd_lights* lights = &r->lighting->lights;
+    rd_bounds bounds = bounds_of(r->points, r->count);
     for (uint32_t i = 0; i < lights->count; ++i) {
-        if (!rd_light_misses(&lights->items[i], &r->bounds)) {
-            add_light(r, i);
+        if (!rd_light_misses(&lights->items[i], &bounds)) {
+            reached l;
+            l.count = 0;
+            find_reached(r, i, 0, r->count, &l);
+            add_light(r, i, &l);
         }
+    }
+}
+
+/* Neighbours with one list, in one sixteenth of a tile: which entries they have yet to visit. */
+typedef struct cursor {
+    uint32_t first_point, end_point;
+    uint32_t entry, last_entry;
+} cursor;
+
+static bool shares_entries(const run* r, const rd_shade_point* a, const rd_shade_point* b)
+{
+    hdrp_u32x4 block = r->lists->grid.cells;
+    return a->first_entry == b->first_entry && a->last_entry == b->last_entry &&
+           a->x / block.z == b->x / block.z && a->y / block.w == b->y / block.w;
+}
+
+static uint32_t make_cursors(const run* r, cursor* cursors)
+{
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < r->count; ++i) {
+        const rd_shade_point* p = &r->points[i];
+        if (n > 0 && shares_entries(r, p, &r->points[i - 1])) {
+            ++cursors[n - 1].end_point;
+        } else {
+            cursor c = {i, i + 1, p->first_entry, p->last_entry};
+            cursors[n++] = c;
+        }
+    }
+    return n;
+}
+
+/* The next light of a list; NO_LIGHT at its end. */
+#define NO_LIGHT UINT32_MAX
+
+static uint32_t next_light(const run* r, const cursor* c)
+{
+    return c->entry < c->last_entry ? hdrp_cull_entry_index(r->lists->entries[c->entry])
+                                    : NO_LIGHT;
+}
+
+/* Lists are in the order of the lights: merged, they give that of the loop over all of them. */
+static void add_listed_lights(const run* r)
+{
+    cursor cursors[RD_SHADE_MAX];
+    uint32_t n = make_cursors(r, cursors);
+    for (;;) {
+        uint32_t light = NO_LIGHT;
+        reached l;
+        for (uint32_t i = 0; i < n; ++i) {
+            uint32_t next = next_light(r, &cursors[i]);
+            light = next < light ? next : light;
+        }
+        if (light == NO_LIGHT) {
+            return;
+        }
+        l.count = 0;
+        for (uint32_t i = 0; i < n; ++i) {
+            cursor* c = &cursors[i];
+            if (next_light(r, c) == light) {
+                const rd_shade_point* p = &r->points[c->first_point];
+                if (hdrp_cull_entry_covers(r->lists->grid, r->lists->entries[c->entry++], p->x,
+                                           p->y)) {
+                    find_reached(r, light, c->first_point, c->end_point, &l);
+                }
+            }
+        }
+        add_light(r, light, &l);
     }
 }
 
@@ -298,8 +369,8 @@ static void count(const run* r, double ms)
     }
 }
 
-void rd_shade(const rd_lighting* l, const rd_shade_point* points, uint32_t point_count,
-              uint32_t index, rd_shaded* out, rd_shade_counts* counts)
+void rd_shade(const rd_lighting* l, const hdrp_cull_lists* lists, const rd_shade_point* points,
+              uint32_t point_count, uint32_t index, rd_shaded* out, rd_shade_counts* counts)
 {
     run r;
     double start = rd_now_ms();
@@ -307,6 +378,7 @@ void rd_shade(const rd_lighting* l, const rd_shade_point* points, uint32_t point
         return;
     }
     r.lighting = l;
+    r.lists = lists;
     r.points = points;
     r.count = point_count;
     r.index = index;
@@ -314,7 +386,7 @@ void rd_shade(const rd_lighting* l, const rd_shade_point* points, uint32_t point
     r.counts = counts;
     begin(&r);
     if (l->features & RD_FEATURE_LIGHTS) {
-        add_lights(&r);
+        (lists ? add_listed_lights : add_all_lights)(&r);
     }
     add_environment(&r);
     count(&r, rd_now_ms() - start);

@@ -481,6 +481,7 @@ void rd_surface_evaluate(const rd_scene* scene, const rd_ray* ray, const rd_ray_
 {
     patch p = make_patch(scene, hit);
     out->material = p.material;
+    out->light_layers = rd_mesh_light_layers(&scene->meshes[hit->mesh]);
     out->brdf = hdrp_brdf_surface_default();
     out->brdf.features = p.material->features;
     out->map_variance = out->coat_map_variance = 0.0f;

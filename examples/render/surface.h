@@ -25,6 +25,7 @@ typedef struct rd_surface {
     hdrp_v3 emission_nits;
     float alpha;
     bool back_face;
+    hdrp_u32 light_layers;
     float map_variance;      /* of the normals that the normal map has within the footprint */
     float coat_map_variance; /* the same of the coat's */
 } rd_surface;
