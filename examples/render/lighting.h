@@ -61,11 +61,11 @@ hdrp_brdf_fgd rd_lighting_fgd(const rd_lighting* l, const hdrp_brdf_data* data, 
 typedef struct rd_shade_point {
     hdrp_brdf_data data;
     hdrp_v3 position, geometric_normal;
-    hdrp_v3 view;     /* unit, towards the viewer */
-    float visibility; /* [0,1] of the surroundings, beside data.ambient_occlusion */
-    uint32_t hash;    /* of the pixel */
-    hdrp_u32 layers;  /* light layers */
-    uint32_t x, y;    /* pixel */
+    hdrp_v3 view;                     /* unit, towards the viewer */
+    float visibility;                 /* [0,1] of the surroundings, beside data.ambient_occlusion */
+    uint32_t hash;                    /* of the pixel */
+    hdrp_u32 layers;                  /* light layers */
+    uint32_t x, y;                    /* pixel */
     uint32_t first_entry, last_entry; /* of lists: the lights that may reach it */
 } rd_shade_point;
 

@@ -120,7 +120,8 @@ static void finish(const rd_sub_frame* s, layer* l, const rd_shade_point* p,
 
 static void shade_batch(const rd_sub_frame* s, rd_worker* w, batch* b)
 {
-    rd_shade(s->r->lighting, rd_layer_lists(s), w->points, b->count, s->index, w->shaded, &w->shade);
+    rd_shade(s->r->lighting, rd_layer_lists(s), w->points, b->count, s->index, w->shaded,
+             &w->shade);
     for (uint32_t i = 0; i < b->count; ++i) {
         hdrp_v3 light = rd_lit_part(s, &w->shaded[i], b->emission[i]);
         finish(s, &w->list->items[b->first + i], &w->points[i], &w->shaded[i], light);

@@ -14,7 +14,7 @@ static void store(const rd_sub_frame* s, rd_worker* w, size_t px, const rd_surfa
     r->gbuffer.geometric_normals[px] = surface->geometric_normal;
     if (deferred) {
         r->gbuffer.kinds[px] = RD_PIXEL_DEFERRED;
-        r->gbuffer.texels[px] = 
+        r->gbuffer.texels[px] =
             rd_gbuffer_encode(data, surface->emission_nits, surface->light_layers, r->exposure);
         ++w->counts.deferred_samples;
     } else {
@@ -63,7 +63,8 @@ static void set_place(const rd_sub_frame* s, rd_shade_point* p, const rd_ray* ra
 
 static void shade_batch(const rd_sub_frame* s, rd_worker* w, const batch* b)
 {
-    rd_shade(s->r->lighting, rd_opaque_lists(s), w->points, b->count, s->index, w->shaded, &w->shade);
+    rd_shade(s->r->lighting, rd_opaque_lists(s), w->points, b->count, s->index, w->shaded,
+             &w->shade);
     for (uint32_t i = 0; i < b->count; ++i) {
         s->r->lit[b->pixel[i]] = rd_lit_part(s, &w->shaded[i], b->emission[i]);
     }

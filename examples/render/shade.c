@@ -274,8 +274,7 @@ static uint32_t make_cursors(const run* r, cursor* cursors)
 
 static uint32_t next_light(const run* r, const cursor* c)
 {
-    return c->entry < c->last_entry ? hdrp_cull_entry_index(r->lists->entries[c->entry])
-                                    : NO_LIGHT;
+    return c->entry < c->last_entry ? hdrp_cull_entry_index(r->lists->entries[c->entry]) : NO_LIGHT;
 }
 
 /* Lists are in the order of the lights: merged, they give that of the loop over all of them. */
