@@ -290,6 +290,9 @@ extern "C" {
 
 /* >>sets of shapes: screen bounds */
 
+/* Room for the planes of a shape: those it has, and others that exclude nothing. */
+#define HDRP_CULL_PLANES_STRIDE 16u
+
 /* Shapes as a camera sees them. The members are for reading; init sets the pointers. */
 typedef struct hdrp_cull_set {
     hdrp_cull_camera camera;
@@ -297,7 +300,7 @@ typedef struct hdrp_cull_set {
     uint32_t count, capacity;
     hdrp_cull_shape* shapes;  /* in view space */
     hdrp_v4* balls;           /* hdrp_cull_shape_ball */
-    hdrp_v4* planes;          /* HDRP_CULL_PLANES_MAX of each shape */
+    float* planes;            /* of each shape x, y, z, w of HDRP_CULL_PLANES_STRIDE planes */
     hdrp_cull_bounds* bounds; /* on the screen */
 } hdrp_cull_set;
 
@@ -548,8 +551,8 @@ static size_t hdrp_i_cull_place_set(hdrp_cull_set* set, uint32_t capacity, void*
     set->capacity = capacity;
     set->shapes = (hdrp_cull_shape*)hdrp_i_cull_take(&arena, capacity, sizeof *set->shapes);
     set->balls = (hdrp_v4*)hdrp_i_cull_take(&arena, capacity, sizeof *set->balls);
-    set->planes = (hdrp_v4*)hdrp_i_cull_take(&arena, (size_t)capacity * HDRP_CULL_PLANES_MAX,
-                                             sizeof *set->planes);
+    set->planes = (float*)hdrp_i_cull_take(&arena, (size_t)capacity * 4u * HDRP_CULL_PLANES_STRIDE,
+                                           sizeof *set->planes);
     set->bounds = (hdrp_cull_bounds*)hdrp_i_cull_take(&arena, capacity, sizeof *set->bounds);
     return arena.used;
 }
@@ -597,10 +600,26 @@ HDRP_API hdrp_result hdrp_cull_set_begin(hdrp_cull_set* set, const hdrp_cull_cam
     return HDRP_OK;
 }
 
+/* The planes of a shape; what it has less than others excludes nothing. */
+static void hdrp_i_cull_project_planes(hdrp_cull_shape shape, float orthographic, float* planes)
+{
+    uint32_t count = hdrp_cull_shape_plane_count(shape), k;
+    for (k = 0u; k < HDRP_CULL_PLANES_STRIDE; ++k) {
+        hdrp_v4 plane = hdrp_v4_make(0.0f, 0.0f, 0.0f, 1.0f);
+        if (k < count) {
+            plane = hdrp_cull_shape_plane(shape, k, orthographic);
+        }
+        planes[k] = plane.x;
+        planes[k + HDRP_CULL_PLANES_STRIDE] = plane.y;
+        planes[k + 2u * HDRP_CULL_PLANES_STRIDE] = plane.z;
+        planes[k + 3u * HDRP_CULL_PLANES_STRIDE] = plane.w;
+    }
+}
+
 HDRP_API hdrp_result hdrp_cull_set_project(hdrp_cull_set* set, const hdrp_cull_shape* shapes,
                                            uint32_t first, uint32_t count)
 {
-    uint32_t i, k;
+    uint32_t i;
     float orthographic;
     if (!set || (!shapes && count > 0u)) {
         return HDRP_ERROR_NULL_POINTER;
@@ -618,9 +637,9 @@ HDRP_API hdrp_result hdrp_cull_set_project(hdrp_cull_set* set, const hdrp_cull_s
         if (set->bounds[i].rect_px.x > set->bounds[i].rect_px.z) {
             continue; /* not seen: nobody asks for its planes */
         }
-        for (k = 0u; k < hdrp_cull_shape_plane_count(s); ++k) {
-            set->planes[(size_t)i * HDRP_CULL_PLANES_MAX + k] =
-                hdrp_cull_shape_plane(s, k, orthographic);
+        if (hdrp_cull_shape_plane_count(s) > 0u) {
+            hdrp_i_cull_project_planes(s, orthographic,
+                                       set->planes + (size_t)i * 4u * HDRP_CULL_PLANES_STRIDE);
         }
     }
     return HDRP_OK;
@@ -872,28 +891,27 @@ HDRP_API hdrp_result hdrp_cull_measure_depth(hdrp_cull_lists* lists, const hdrp_
 
 /* ---- lists of a tile --------------------------------------------------------------------------
  * A coarse cell is a block of tiles. What is seen in it is a candidate for each of its tiles; what a
- * tile finds among the candidates is a hit. Candidates lie in arrays of their own, one for each
- * member, so that compilers test several of them at once. */
+ * tile finds among the candidates is a hit. Both lie in arrays of their own, one for each member, so
+ * that compilers test several of them at once. */
 
 typedef struct hdrp_i_cull_scratch {
     uint16_t* coarse;       /* shapes of each coarse cell of a row */
     uint32_t* coarse_count; /* how many */
-    uint16_t* candidate;    /* shapes of a coarse cell */
-    float *x, *y, *z, *radius;
-    float *left, *upper, *right, *lower;
-    float *bound_nearest, *bound_farthest;
-    float *nearest, *farthest; /* of candidates in a tile */
-    uint16_t* planar;          /* candidates that have planes */
-    float* plane[4];           /* x, y, z, w of plane k of planar p: [k * capacity + p] */
-    uint16_t* hit;             /* candidates of a tile */
-    float *hit_nearest, *hit_farthest;
-    uint16_t* blocks; /* of a hit: what it reaches */
-    uint16_t* keep;   /* of a hit: 0 where there is no room */
-    uint32_t* inside; /* of a candidate: 1 where its ball contains all that a tile shows */
+    /* Candidates: the shape, its rectangle in pixels and its depths. */
+    uint16_t* candidate;
+    float *left, *upper, *right, *lower, *nearest, *farthest;
+    uint32_t* overlaps; /* 1 where both overlap those of a tile */
+    /* Hits: the shape, its ball, its depths in the tile, its slices. */
+    uint16_t* hit;
+    float *x, *y, *z, *radius, *hit_nearest, *hit_farthest;
     uint8_t *hit_first, *hit_last;
-    uint64_t* order;                    /* hits by importance */
-    float *pixel_x, *pixel_y, *pixel_z; /* of a tile */
-    uint32_t* reached;                  /* 1 for a pixel of a band that a shape reaches */
+    uint16_t* blocks; /* what it reaches */
+    uint16_t* keep;   /* 0 where there is no room */
+    uint32_t* inside; /* 1 where its ball contains all that a tile shows, or a pixel */
+    uint64_t* order;  /* by importance */
+    /* Pixels of a tile. */
+    float *pixel_x, *pixel_y, *pixel_z;
+    uint32_t* reached; /* 1 for a pixel of a band that a shape reaches */
     uint32_t capacity;
 } hdrp_i_cull_scratch;
 
@@ -905,8 +923,8 @@ typedef struct hdrp_i_cull_job {
     hdrp_i_cull_scratch s;
     uint32_t coarse_columns, coarse_rows;             /* tiles of a coarse cell */
     uint32_t candidate_end[HDRP_CULL_CATEGORY_COUNT]; /* of each category */
-    uint32_t candidate_count, planar_count, hit_count;
     uint32_t hit_end[HDRP_CULL_CATEGORY_COUNT];
+    uint32_t hit_count;
     uint32_t x0, y0, x1, y1; /* of the tile, in px */
 } hdrp_i_cull_job;
 
@@ -930,27 +948,23 @@ static size_t hdrp_i_cull_place_scratch(hdrp_i_cull_scratch* s, const hdrp_cull_
                     hdrp_i_cull_coarse_tiles(d->tile_width_px);
     size_t pixels =
         (d->flags & HDRP_CULL_PIXELS) ? (size_t)d->tile_width_px * d->tile_height_px : 0u;
-    float** member[] = {
-        &s->x,       &s->y,        &s->z,           &s->radius,        &s->left,
-        &s->upper,   &s->right,    &s->lower,       &s->bound_nearest, &s->bound_farthest,
-        &s->nearest, &s->farthest, &s->hit_nearest, &s->hit_farthest};
+    float** of_shapes[] = {&s->left,    &s->upper,    &s->right,       &s->lower,
+                           &s->nearest, &s->farthest, &s->x,           &s->y,
+                           &s->z,       &s->radius,   &s->hit_nearest, &s->hit_farthest};
+    uint16_t** indices[] = {&s->candidate, &s->hit, &s->blocks, &s->keep};
     size_t i;
     a.block = (unsigned char*)memory;
     a.used = 0u;
     s->capacity = d->shape_capacity;
     s->coarse = (uint16_t*)hdrp_i_cull_take(&a, across * n, sizeof(uint16_t));
     s->coarse_count = (uint32_t*)hdrp_i_cull_take(&a, across, sizeof(uint32_t));
-    s->candidate = (uint16_t*)hdrp_i_cull_take(&a, n, sizeof(uint16_t));
-    for (i = 0u; i < sizeof member / sizeof member[0]; ++i) {
-        *member[i] = hdrp_i_cull_floats(&a, n);
+    for (i = 0u; i < sizeof of_shapes / sizeof of_shapes[0]; ++i) {
+        *of_shapes[i] = hdrp_i_cull_floats(&a, n);
     }
-    s->planar = (uint16_t*)hdrp_i_cull_take(&a, n, sizeof(uint16_t));
-    for (i = 0u; i < 4u; ++i) {
-        s->plane[i] = hdrp_i_cull_floats(&a, n * HDRP_CULL_PLANES_MAX);
+    for (i = 0u; i < sizeof indices / sizeof indices[0]; ++i) {
+        *indices[i] = (uint16_t*)hdrp_i_cull_take(&a, n, sizeof(uint16_t));
     }
-    s->hit = (uint16_t*)hdrp_i_cull_take(&a, n, sizeof(uint16_t));
-    s->blocks = (uint16_t*)hdrp_i_cull_take(&a, n, sizeof(uint16_t));
-    s->keep = (uint16_t*)hdrp_i_cull_take(&a, n, sizeof(uint16_t));
+    s->overlaps = (uint32_t*)hdrp_i_cull_take(&a, n, sizeof(uint32_t));
     s->inside = (uint32_t*)hdrp_i_cull_take(&a, n, sizeof(uint32_t));
     s->hit_first = (uint8_t*)hdrp_i_cull_take(&a, n, 1u);
     s->hit_last = (uint8_t*)hdrp_i_cull_take(&a, n, 1u);
@@ -1014,50 +1028,23 @@ static void hdrp_i_cull_collect(hdrp_i_cull_job* job, uint32_t coarse_row, uint3
     }
 }
 
-static void hdrp_i_cull_gather_planes(hdrp_i_cull_job* job, uint32_t shape, uint32_t candidate)
-{
-    hdrp_i_cull_scratch* s = &job->s;
-    uint32_t count = hdrp_cull_shape_plane_count(job->set->shapes[shape]);
-    const hdrp_v4* planes = job->set->planes + (size_t)shape * HDRP_CULL_PLANES_MAX;
-    size_t at = job->planar_count;
-    uint32_t k;
-    if (count == 0u) {
-        return;
-    }
-    s->planar[job->planar_count++] = (uint16_t)candidate;
-    for (k = 0u; k < HDRP_CULL_PLANES_MAX; ++k, at += s->capacity) {
-        /* A normal of 0 excludes nothing. */
-        s->plane[0][at] = k < count ? planes[k].x : 0.0f;
-        s->plane[1][at] = k < count ? planes[k].y : 0.0f;
-        s->plane[2][at] = k < count ? planes[k].z : 0.0f;
-        s->plane[3][at] = k < count ? planes[k].w : 1.0f;
-    }
-}
-
+/* The shapes of a coarse cell become candidates. */
 static void hdrp_i_cull_gather(hdrp_i_cull_job* job, uint32_t column)
 {
     hdrp_i_cull_scratch* s = &job->s;
     const uint16_t* shapes = s->coarse + (size_t)column * s->capacity;
-    uint32_t m, category;
-    job->candidate_count = s->coarse_count[column];
-    job->planar_count = 0u;
+    uint32_t count = s->coarse_count[column], m, category;
     memset(job->candidate_end, 0, sizeof job->candidate_end);
-    for (m = 0u; m < job->candidate_count; ++m) {
+    for (m = 0u; m < count; ++m) {
         uint32_t i = shapes[m];
-        hdrp_v4 ball = job->set->balls[i];
         const hdrp_cull_bounds* b = &job->set->bounds[i];
         s->candidate[m] = (uint16_t)i;
-        s->x[m] = ball.x;
-        s->y[m] = ball.y;
-        s->z[m] = ball.z;
-        s->radius[m] = ball.w;
         s->left[m] = b->rect_px.x;
         s->upper[m] = b->rect_px.y;
         s->right[m] = b->rect_px.z;
         s->lower[m] = b->rect_px.w;
-        s->bound_nearest[m] = b->nearest;
-        s->bound_farthest[m] = b->farthest;
-        hdrp_i_cull_gather_planes(job, i, m);
+        s->nearest[m] = b->nearest;
+        s->farthest[m] = b->farthest;
         job->candidate_end[hdrp_cull_shape_category(job->set->shapes[i])] = m + 1u;
     }
     for (category = 1u; category < HDRP_CULL_CATEGORY_COUNT; ++category) {
@@ -1069,155 +1056,172 @@ static void hdrp_i_cull_gather(hdrp_i_cull_job* job, uint32_t column)
 
 /* ---- tests of candidates --------------------------------------------------------------------- */
 
-static void hdrp_i_cull_test_balls(const hdrp_i_cull_scratch* s, uint32_t count,
-                                   hdrp_cull_tile tile, float orthographic)
-{
-    const float* x = s->x;
-    const float* y = s->y;
-    const float* z = s->z;
-    const float* radius = s->radius;
-    const float* bound_nearest = s->bound_nearest;
-    const float* bound_farthest = s->bound_farthest;
-    float* nearest = s->nearest;
-    float* farthest = s->farthest;
-    uint32_t m;
-    /* The constant last argument leaves one loop without the other projection in it. */
-    if (orthographic > 0.0f) {
-        HDRP_I_CULL_INDEPENDENT
-        for (m = 0u; m < count; ++m) {
-            hdrp_cull_interval r =
-                hdrp_cull_interval_ball(tile, hdrp_v4_make(x[m], y[m], z[m], radius[m]), 1.0f);
-            nearest[m] = hdrp_max(r.nearest, bound_nearest[m]);
-            farthest[m] = hdrp_min(r.farthest, bound_farthest[m]);
-        }
-    } else {
-        HDRP_I_CULL_INDEPENDENT
-        for (m = 0u; m < count; ++m) {
-            hdrp_cull_interval r =
-                hdrp_cull_interval_ball(tile, hdrp_v4_make(x[m], y[m], z[m], radius[m]), 0.0f);
-            nearest[m] = hdrp_max(r.nearest, bound_nearest[m]);
-            farthest[m] = hdrp_min(r.farthest, bound_farthest[m]);
-        }
-    }
-}
+/* Depths are looked up with functions that may be contracted elsewhere: hdrp_cull_slice. */
+#define HDRP_I_CULL_DEPTH_MARGIN 2e-6f
 
-/* Instead of it: rectangles of pixels and depths alone. */
-static void hdrp_i_cull_test_bounds(const hdrp_i_cull_job* job, uint32_t count)
+static void hdrp_i_cull_test_bounds(const hdrp_i_cull_job* job, float lo, float hi)
 {
     const hdrp_i_cull_scratch* s = &job->s;
     const float* left = s->left;
     const float* upper = s->upper;
     const float* right = s->right;
     const float* lower = s->lower;
-    const float* bound_nearest = s->bound_nearest;
-    const float* bound_farthest = s->bound_farthest;
-    float* nearest = s->nearest;
-    float* farthest = s->farthest;
-    float x0 = (float)job->x0, y0 = (float)job->y0, x1 = (float)job->x1, y1 = (float)job->y1;
-    uint32_t m;
+    const float* nearest = s->nearest;
+    const float* farthest = s->farthest;
+    uint32_t* overlaps = s->overlaps;
+    float x0 = (float)(int)job->x0, y0 = (float)(int)job->y0;
+    float x1 = (float)(int)job->x1, y1 = (float)(int)job->y1;
+    uint32_t count = job->candidate_end[HDRP_CULL_CATEGORY_COUNT - 1u], m;
+    lo *= 1.0f - HDRP_I_CULL_DEPTH_MARGIN;
+    hi *= 1.0f + HDRP_I_CULL_DEPTH_MARGIN;
     HDRP_I_CULL_INDEPENDENT
     for (m = 0u; m < count; ++m) {
-        float l = left[m], u = upper[m], r = right[m], b = lower[m];
-        float in_x = l <= x1 && r >= x0 ? 1.0f : 0.0f;
-        float inside = u <= y1 && b >= y0 ? in_x : 0.0f;
-        nearest[m] = inside > 0.0f ? bound_nearest[m] : HDRP_FLT_MAX;
-        farthest[m] = bound_farthest[m];
+        /* Each difference is positive where there is a gap. */
+        float x = hdrp_max(left[m] - x1, x0 - right[m]);
+        float y = hdrp_max(upper[m] - y1, y0 - lower[m]);
+        float z = hdrp_max(nearest[m] - hi, lo - farthest[m]);
+        overlaps[m] = hdrp_max(hdrp_max(x, y), z) <= 0.0f ? 1u : 0u;
     }
 }
 
-static void hdrp_i_cull_test_plane(const hdrp_i_cull_scratch* s, size_t at, uint32_t count,
-                                   hdrp_cull_tile tile, float orthographic, float* nearest,
-                                   float* farthest)
-{
-    const float* x = s->plane[0] + at;
-    const float* y = s->plane[1] + at;
-    const float* z = s->plane[2] + at;
-    const float* w = s->plane[3] + at;
-    uint32_t p;
-    if (orthographic > 0.0f) {
-        HDRP_I_CULL_INDEPENDENT
-        for (p = 0u; p < count; ++p) {
-            hdrp_cull_interval r;
-            r.nearest = nearest[p];
-            r.farthest = farthest[p];
-            r = hdrp_cull_interval_plane(r, tile, hdrp_v4_make(x[p], y[p], z[p], w[p]), 1.0f);
-            nearest[p] = r.nearest;
-            farthest[p] = r.farthest;
-        }
-    } else {
-        HDRP_I_CULL_INDEPENDENT
-        for (p = 0u; p < count; ++p) {
-            hdrp_cull_interval r;
-            r.nearest = nearest[p];
-            r.farthest = farthest[p];
-            r = hdrp_cull_interval_plane(r, tile, hdrp_v4_make(x[p], y[p], z[p], w[p]), 0.0f);
-            nearest[p] = r.nearest;
-            farthest[p] = r.farthest;
-        }
-    }
-}
-
-/* The intervals of candidates with planes, shortened. Those of hits are not used yet. */
-static void hdrp_i_cull_test_planes(hdrp_i_cull_job* job, hdrp_cull_tile tile, float orthographic)
+/* The candidates whose bounds overlap the rectangle and the depths become hits. */
+static void hdrp_i_cull_select(hdrp_i_cull_job* job, float lo, float hi)
 {
     hdrp_i_cull_scratch* s = &job->s;
-    uint32_t p, k;
-    for (p = 0u; p < job->planar_count; ++p) {
-        s->hit_nearest[p] = s->nearest[s->planar[p]];
-        s->hit_farthest[p] = s->farthest[s->planar[p]];
-    }
-    for (k = 0u; k < HDRP_CULL_PLANES_MAX; ++k) {
-        hdrp_i_cull_test_plane(s, (size_t)k * s->capacity, job->planar_count, tile, orthographic,
-                               s->hit_nearest, s->hit_farthest);
-    }
-    for (p = 0u; p < job->planar_count; ++p) {
-        s->nearest[s->planar[p]] = s->hit_nearest[p];
-        s->farthest[s->planar[p]] = s->hit_farthest[p];
-    }
-}
-
-/* Depths are looked up with functions that may be contracted elsewhere: hdrp_cull_slice. */
-#define HDRP_I_CULL_DEPTH_MARGIN 2e-6f
-
-/* The candidates that are between two depths become hits. */
-static void hdrp_i_cull_hits(hdrp_i_cull_job* job, float lo, float hi)
-{
-    hdrp_i_cull_scratch* s = &job->s;
-    uint32_t m, n = 0u, category;
-    m = 0u;
+    uint32_t m = 0u, n = 0u, category;
+    hdrp_i_cull_test_bounds(job, lo, hi);
     for (category = 0u; category < HDRP_CULL_CATEGORY_COUNT; ++category) {
         for (; m < job->candidate_end[category]; ++m) {
-            float a = s->nearest[m] * (1.0f - HDRP_I_CULL_DEPTH_MARGIN);
-            float b = s->farthest[m] * (1.0f + HDRP_I_CULL_DEPTH_MARGIN);
-            a = a > lo ? a : lo;
-            b = b < hi ? b : hi;
-            s->hit[n] = (uint16_t)m;
-            s->hit_nearest[n] = a;
-            s->hit_farthest[n] = b;
-            n += a <= b ? 1u : 0u;
+            s->keep[n] = (uint16_t)m;
+            n += s->overlaps[m];
         }
         job->hit_end[category] = n;
     }
     job->hit_count = n;
+    for (n = 0u; n < job->hit_count; ++n) {
+        hdrp_v4 ball;
+        m = s->keep[n];
+        s->hit[n] = s->candidate[m];
+        ball = job->set->balls[s->hit[n]];
+        s->x[n] = ball.x;
+        s->y[n] = ball.y;
+        s->z[n] = ball.z;
+        s->radius[n] = ball.w;
+        s->hit_nearest[n] = hdrp_max(s->nearest[m], lo);
+        s->hit_farthest[n] = hdrp_min(s->farthest[m], hi);
+    }
 }
 
-/* Keeps the hits whose `keep` is not 0. */
-static void hdrp_i_cull_keep(hdrp_i_cull_job* job, const uint16_t* keep)
+static void hdrp_i_cull_test_balls(const hdrp_i_cull_job* job, hdrp_cull_tile tile,
+                                   float orthographic)
 {
-    hdrp_i_cull_scratch* s = &job->s;
+    const float* x = job->s.x;
+    const float* y = job->s.y;
+    const float* z = job->s.z;
+    const float* radius = job->s.radius;
+    float* nearest = job->s.hit_nearest;
+    float* farthest = job->s.hit_farthest;
+    uint32_t count = job->hit_count, h;
+    /* The constant last argument leaves one loop without the other projection in it. */
+    if (orthographic > 0.0f) {
+        HDRP_I_CULL_INDEPENDENT
+        for (h = 0u; h < count; ++h) {
+            hdrp_cull_interval r =
+                hdrp_cull_interval_ball(tile, hdrp_v4_make(x[h], y[h], z[h], radius[h]), 1.0f);
+            nearest[h] = hdrp_max(r.nearest * (1.0f - HDRP_I_CULL_DEPTH_MARGIN), nearest[h]);
+            farthest[h] = hdrp_min(r.farthest * (1.0f + HDRP_I_CULL_DEPTH_MARGIN), farthest[h]);
+        }
+    } else {
+        HDRP_I_CULL_INDEPENDENT
+        for (h = 0u; h < count; ++h) {
+            hdrp_cull_interval r =
+                hdrp_cull_interval_ball(tile, hdrp_v4_make(x[h], y[h], z[h], radius[h]), 0.0f);
+            nearest[h] = hdrp_max(r.nearest * (1.0f - HDRP_I_CULL_DEPTH_MARGIN), nearest[h]);
+            farthest[h] = hdrp_min(r.farthest * (1.0f + HDRP_I_CULL_DEPTH_MARGIN), farthest[h]);
+        }
+    }
+}
+
+/* Shortens the interval of a hit by the planes of its shape, all of them at once. */
+static void hdrp_i_cull_test_planes(const hdrp_i_cull_job* job, uint32_t h, hdrp_cull_tile tile,
+                                    float orthographic)
+{
+    float nearest[HDRP_CULL_PLANES_STRIDE], farthest[HDRP_CULL_PLANES_STRIDE];
+    const float* x = job->set->planes + (size_t)job->s.hit[h] * 4u * HDRP_CULL_PLANES_STRIDE;
+    const float* y = x + HDRP_CULL_PLANES_STRIDE;
+    const float* z = y + HDRP_CULL_PLANES_STRIDE;
+    const float* w = z + HDRP_CULL_PLANES_STRIDE;
+    uint32_t k, half_count;
+    HDRP_I_CULL_INDEPENDENT
+    for (k = 0u; k < HDRP_CULL_PLANES_STRIDE; ++k) {
+        hdrp_cull_interval r;
+        r.nearest = 0.0f;
+        r.farthest = HDRP_FLT_MAX;
+        r = hdrp_cull_interval_plane(r, tile, hdrp_v4_make(x[k], y[k], z[k], w[k]), orthographic);
+        nearest[k] = r.nearest;
+        farthest[k] = r.farthest;
+    }
+    for (half_count = HDRP_CULL_PLANES_STRIDE / 2u; half_count > 0u; half_count /= 2u) {
+        for (k = 0u; k < half_count; ++k) {
+            nearest[k] = hdrp_max(nearest[k + half_count], nearest[k]);
+            farthest[k] = hdrp_min(farthest[k + half_count], farthest[k]);
+        }
+    }
+    job->s.hit_nearest[h] =
+        hdrp_max(nearest[0] * (1.0f - HDRP_I_CULL_DEPTH_MARGIN), job->s.hit_nearest[h]);
+    job->s.hit_farthest[h] =
+        hdrp_min(farthest[0] * (1.0f + HDRP_I_CULL_DEPTH_MARGIN), job->s.hit_farthest[h]);
+}
+
+/* Moves a hit to another place. */
+static void hdrp_i_cull_move(hdrp_i_cull_scratch* s, uint32_t from, uint32_t to)
+{
+    s->hit[to] = s->hit[from];
+    s->x[to] = s->x[from];
+    s->y[to] = s->y[from];
+    s->z[to] = s->z[from];
+    s->radius[to] = s->radius[from];
+    s->hit_nearest[to] = s->hit_nearest[from];
+    s->hit_farthest[to] = s->hit_farthest[from];
+    s->hit_first[to] = s->hit_first[from];
+    s->hit_last[to] = s->hit_last[from];
+    s->blocks[to] = s->blocks[from];
+}
+
+/* Keeps the hits whose mark is not 0. */
+static void hdrp_i_cull_keep(hdrp_i_cull_job* job, const uint16_t* marks)
+{
     uint32_t h = 0u, n = 0u, category;
     for (category = 0u; category < HDRP_CULL_CATEGORY_COUNT; ++category) {
         for (; h < job->hit_end[category]; ++h) {
-            uint16_t kept = keep[h];
-            s->hit[n] = s->hit[h];
-            s->hit_first[n] = s->hit_first[h];
-            s->hit_last[n] = s->hit_last[h];
-            s->blocks[n] = s->blocks[h];
+            uint16_t kept = marks[h];
+            hdrp_i_cull_move(&job->s, h, n);
             n += kept != 0u ? 1u : 0u;
         }
         job->hit_end[category] = n;
     }
     job->hit_count = n;
+}
+
+/* The shapes that reach the rectangle between two depths become hits. */
+static void hdrp_i_cull_find(hdrp_i_cull_job* job, hdrp_cull_tile tile, float lo, float hi)
+{
+    float orthographic = job->lists->camera.forward_orthographic.w;
+    uint32_t h;
+    hdrp_i_cull_select(job, lo, hi);
+    if (job->lists->desc.flags & HDRP_CULL_FAST) {
+        return;
+    }
+    hdrp_i_cull_test_balls(job, tile, orthographic);
+    for (h = 0u; h < job->hit_count; ++h) {
+        int there = job->s.hit_nearest[h] <= job->s.hit_farthest[h];
+        if (there && hdrp_cull_shape_plane_count(job->set->shapes[job->s.hit[h]]) > 0u) {
+            hdrp_i_cull_test_planes(job, h, tile, orthographic);
+            there = job->s.hit_nearest[h] <= job->s.hit_farthest[h];
+        }
+        job->s.keep[h] = there ? 1u : 0u;
+    }
+    hdrp_i_cull_keep(job, job->s.keep);
 }
 
 /* ---- pixels ---------------------------------------------------------------------------------- */
@@ -1370,7 +1374,7 @@ static uint32_t hdrp_i_cull_contains_box(const hdrp_cull_shape* shape, const hdr
     return 1u;
 }
 
-/* Whether the ball of each candidate contains a box: its farthest corner. */
+/* Whether the ball of each hit contains a box: its farthest corner. */
 static void hdrp_i_cull_balls_contain_box(const hdrp_i_cull_job* job, hdrp_i_cull_box b)
 {
     const float* x = job->s.x;
@@ -1378,20 +1382,20 @@ static void hdrp_i_cull_balls_contain_box(const hdrp_i_cull_job* job, hdrp_i_cul
     const float* z = job->s.z;
     const float* radius = job->s.radius;
     uint32_t* inside = job->s.inside;
-    uint32_t m;
+    uint32_t count = job->hit_count, h;
     HDRP_I_CULL_INDEPENDENT
-    for (m = 0u; m < job->candidate_count; ++m) {
-        float dx = hdrp_max(x[m] - b.lo.x, b.hi.x - x[m]);
-        float dy = hdrp_max(y[m] - b.lo.y, b.hi.y - y[m]);
-        float dz = hdrp_max(z[m] - b.lo.z, b.hi.z - z[m]);
-        inside[m] = dx * dx + dy * dy + dz * dz <= radius[m] * radius[m] ? 1u : 0u;
+    for (h = 0u; h < count; ++h) {
+        float dx = hdrp_max(x[h] - b.lo.x, b.hi.x - x[h]);
+        float dy = hdrp_max(y[h] - b.lo.y, b.hi.y - y[h]);
+        float dz = hdrp_max(z[h] - b.lo.z, b.hi.z - z[h]);
+        inside[h] = dx * dx + dy * dy + dz * dz <= radius[h] * radius[h] ? 1u : 0u;
     }
 }
 
 /* Pixels that are asked first, spread over the tile. */
 #define HDRP_I_CULL_PROBES 8u
 
-/* Adds the candidates whose ball contains one of a few pixels. */
+/* Adds the hits whose ball contains one of a few pixels. */
 static void hdrp_i_cull_probe(const hdrp_i_cull_job* job)
 {
     const hdrp_cull_lists* lists = job->lists;
@@ -1400,7 +1404,8 @@ static void hdrp_i_cull_probe(const hdrp_i_cull_job* job)
     const float* z = job->s.z;
     const float* radius = job->s.radius;
     uint32_t* inside = job->s.inside;
-    uint32_t width = job->x1 - job->x0, height = job->y1 - job->y0, i, m;
+    uint32_t width = job->x1 - job->x0, height = job->y1 - job->y0;
+    uint32_t count = job->hit_count, i, h;
     for (i = 0u; i < HDRP_I_CULL_PROBES; ++i) {
         uint32_t px = job->x0 + (2u * i + 1u) * width / (2u * HDRP_I_CULL_PROBES);
         uint32_t py = job->y0 + (2u * (3u * i % HDRP_I_CULL_PROBES) + 1u) * height /
@@ -1414,9 +1419,9 @@ static void hdrp_i_cull_probe(const hdrp_i_cull_job* job)
         }
         p = hdrp_i_cull_position(lists, px, py, depth);
         HDRP_I_CULL_INDEPENDENT
-        for (m = 0u; m < job->candidate_count; ++m) {
-            float dx = x[m] - p.x, dy = y[m] - p.y, dz = z[m] - p.z;
-            inside[m] |= dx * dx + dy * dy + dz * dz <= radius[m] * radius[m] ? 1u : 0u;
+        for (h = 0u; h < count; ++h) {
+            float dx = x[h] - p.x, dy = y[h] - p.y, dz = z[h] - p.z;
+            inside[h] |= dx * dx + dy * dy + dz * dz <= radius[h] * radius[h] ? 1u : 0u;
         }
     }
 }
@@ -1438,11 +1443,10 @@ static void hdrp_i_cull_test_pixels(hdrp_i_cull_job* job, hdrp_cull_tile tile, h
         hdrp_i_cull_probe(job);
     }
     for (h = 0u; h < job->hit_count; ++h) {
-        uint32_t m = s->hit[h];
-        const hdrp_cull_shape* shape = &job->set->shapes[s->candidate[m]];
+        const hdrp_cull_shape* shape = &job->set->shapes[s->hit[h]];
         int ball = hdrp_cull_shape_kind(*shape) == HDRP_CULL_KIND_BALL;
         /* Of other shapes a pixel is found sooner than eight corners are looked at. */
-        if (ball ? s->inside[m] : all && s->inside[m] && hdrp_i_cull_contains_box(shape, &box)) {
+        if (ball ? s->inside[h] : all && s->inside[h] && hdrp_i_cull_contains_box(shape, &box)) {
             continue;
         }
         if (!read) {
@@ -1510,10 +1514,9 @@ static uint32_t hdrp_i_cull_limit(hdrp_i_cull_job* job)
         return 0u;
     }
     for (h = 0u; h < count; ++h) {
-        hdrp_u32 importance = job->set->shapes[s->candidate[s->hit[h]]].bits.w;
+        hdrp_u32 importance = job->set->shapes[s->hit[h]].bits.w;
         /* The bits of floats that are not negative are ordered as the floats are. */
-        s->order[h] = (uint64_t)(~importance & 0x7fffffffu) << 32 |
-                      (uint64_t)s->candidate[s->hit[h]] << 16 | h;
+        s->order[h] = (uint64_t)(~importance & 0x7fffffffu) << 32 | (uint64_t)s->hit[h] << 16 | h;
     }
     hdrp_i_cull_sort(s->order, count);
     for (h = 0u; h < count; ++h) {
@@ -1599,8 +1602,8 @@ static void hdrp_i_cull_write(hdrp_i_cull_job* job, uint32_t tile, uint32_t drop
 }
 
 /* The rectangle of pixels of a tile, or of several. */
-static void hdrp_i_cull_set_rectangle(hdrp_i_cull_job* job, uint32_t column, uint32_t row,
-                                      uint32_t columns, uint32_t rows)
+static hdrp_cull_tile hdrp_i_cull_set_rectangle(hdrp_i_cull_job* job, uint32_t column, uint32_t row,
+                                                uint32_t columns, uint32_t rows)
 {
     const hdrp_cull_lists* lists = job->lists;
     uint32_t x1 = (column + columns) * lists->grid.tiles.x, y1 = (row + rows) * lists->grid.tiles.y;
@@ -1608,40 +1611,23 @@ static void hdrp_i_cull_set_rectangle(hdrp_i_cull_job* job, uint32_t column, uin
     job->y0 = row * lists->grid.tiles.y;
     job->x1 = x1 < lists->desc.width_px ? x1 : lists->desc.width_px;
     job->y1 = y1 < lists->desc.height_px ? y1 : lists->desc.height_px;
-}
-
-/* The intervals of all candidates in the rectangle. */
-static hdrp_cull_tile hdrp_i_cull_test(hdrp_i_cull_job* job)
-{
-    const hdrp_cull_lists* lists = job->lists;
-    float orthographic = lists->camera.forward_orthographic.w;
-    hdrp_cull_tile t = hdrp_cull_tile_make(
-        lists->camera, (float)job->x0, (float)job->y0, (float)job->x1, (float)job->y1,
-        (float)lists->desc.width_px, (float)lists->desc.height_px);
-    if (lists->desc.flags & HDRP_CULL_FAST) {
-        hdrp_i_cull_test_bounds(job, job->candidate_count);
-    } else {
-        hdrp_i_cull_test_balls(&job->s, job->candidate_count, t, orthographic);
-        hdrp_i_cull_test_planes(job, t, orthographic);
-    }
-    return t;
+    return hdrp_cull_tile_make(lists->camera, (float)job->x0, (float)job->y0, (float)job->x1,
+                               (float)job->y1, (float)lists->desc.width_px,
+                               (float)lists->desc.height_px);
 }
 
 static void hdrp_i_cull_build_tile(hdrp_i_cull_job* job, uint32_t column, uint32_t row)
 {
     hdrp_cull_lists* lists = job->lists;
-    hdrp_u32x4 size = lists->grid.tiles;
-    uint32_t tile = row * size.z + column, h;
+    uint32_t tile = row * lists->grid.tiles.z + column, h;
     hdrp_v4 info = lists->tiles[tile];
-    float lo = lists->camera.eye_near.w, hi = lists->camera.right_far.w;
-    hdrp_cull_tile t;
-    hdrp_i_cull_set_rectangle(job, column, row, 1u, 1u);
+    hdrp_cull_tile t = hdrp_i_cull_set_rectangle(job, column, row, 1u, 1u);
     if (lists->desc.slice_count == 1u) {
-        lo = info.x; /* nothing is between them where there is only sky */
-        hi = info.y;
+        /* Nothing is between its depths where there is only sky. */
+        hdrp_i_cull_find(job, t, info.x, info.y);
+    } else {
+        hdrp_i_cull_find(job, t, lists->camera.eye_near.w, lists->camera.right_far.w);
     }
-    t = hdrp_i_cull_test(job);
-    hdrp_i_cull_hits(job, lo, hi);
     hdrp_i_cull_slices(job, info.z);
     for (h = 0u; h < job->hit_count; ++h) {
         job->s.blocks[h] = 0xffffu;
@@ -1656,8 +1642,7 @@ static void hdrp_i_cull_build_tile(hdrp_i_cull_job* job, uint32_t column, uint32
 static void hdrp_i_cull_prune_coarse(hdrp_i_cull_job* job, uint32_t cell, uint32_t first_row)
 {
     const hdrp_cull_lists* lists = job->lists;
-    hdrp_i_cull_scratch* s = &job->s;
-    uint32_t first_column = cell * job->coarse_columns, row, column, h;
+    uint32_t first_column = cell * job->coarse_columns, row, column;
     float lo = HDRP_FLT_MAX, hi = 0.0f;
     for (row = first_row; row < first_row + job->coarse_rows && row < lists->grid.tiles.w; ++row) {
         for (column = first_column;
@@ -1668,13 +1653,13 @@ static void hdrp_i_cull_prune_coarse(hdrp_i_cull_job* job, uint32_t cell, uint32
             hi = info.x <= info.y ? hdrp_max(info.y, hi) : hi;
         }
     }
-    hdrp_i_cull_set_rectangle(job, first_column, first_row, job->coarse_columns, job->coarse_rows);
-    hdrp_i_cull_test(job);
-    hdrp_i_cull_hits(job, lo, hi);
-    for (h = 0u; h < job->hit_count; ++h) {
-        s->coarse[(size_t)cell * s->capacity + h] = s->candidate[s->hit[h]];
-    }
-    s->coarse_count[cell] = job->hit_count;
+    hdrp_i_cull_find(job,
+                     hdrp_i_cull_set_rectangle(job, first_column, first_row, job->coarse_columns,
+                                               job->coarse_rows),
+                     lo, hi);
+    memcpy(job->s.coarse + (size_t)cell * job->s.capacity, job->s.hit,
+           job->hit_count * sizeof *job->s.hit);
+    job->s.coarse_count[cell] = job->hit_count;
 }
 
 static void hdrp_i_cull_build_row(hdrp_i_cull_job* job, uint32_t coarse_row)
