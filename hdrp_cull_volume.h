@@ -74,6 +74,13 @@ HDRP_FN hdrp_v3 hdrp_i_cull_cross(hdrp_v3 a, hdrp_v3 b)
     return hdrp_v3_make(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
 
+/* The sine of the angle between unit vectors: that of their cosine has no digits near 0. */
+HDRP_FN float hdrp_i_cull_sine(hdrp_v3 a, hdrp_v3 b)
+{
+    hdrp_v3 c = hdrp_i_cull_cross(a, b);
+    return hdrp_sqrt(hdrp_i_cull_dot(c, c));
+}
+
 /* |x| + |y| + |z|: what rounding errors of a position are measured by. */
 HDRP_FN float hdrp_i_cull_size(hdrp_v3 v)
 {
@@ -115,6 +122,8 @@ HDRP_FN hdrp_cull_camera hdrp_i_cull_camera(hdrp_v3 eye, hdrp_v3 forward, hdrp_v
     float near_limited = hdrp_clamp(near_m, 1e-6f, 1e9f);
     x = hdrp_v3_select(hdrp_i_cull_dot(x, x) > 1e-6f ? 1.0f : 0.0f, x, arbitrary);
     x = hdrp_i_cull_unit(x, arbitrary);
+    /* Where up is nearly along f, rounding leaves x askew. */
+    x = hdrp_i_cull_unit(hdrp_i_cull_mad(x, f, -hdrp_i_cull_dot(x, f)), arbitrary);
     c.eye_near = hdrp_v4_make(hdrp_clamp(eye.x, -1e18f, 1e18f), hdrp_clamp(eye.y, -1e18f, 1e18f),
                               hdrp_clamp(eye.z, -1e18f, 1e18f), near_limited);
     c.right_far = hdrp_v4_from_v3(x, hdrp_clamp(far_m, near_limited, HDRP_CULL_FAR_INFINITE));
@@ -131,6 +140,15 @@ HDRP_FN hdrp_v2 hdrp_i_cull_window(float lo, float hi, float limit)
     float b = hdrp_clamp(hi, -limit, limit);
     float least = 1e-6f * hdrp_max(hdrp_max(hdrp_abs(a), hdrp_abs(b)), 1e-6f);
     return hdrp_v2_make(hdrp_min(a, b), hdrp_max(hdrp_abs(b - a), least));
+}
+
+/* A camera with a window: its edges are left, right, bottom, top. */
+HDRP_FN hdrp_cull_camera hdrp_i_cull_with_window(hdrp_cull_camera c, hdrp_v4 edges, float limit)
+{
+    hdrp_v2 x = hdrp_i_cull_window(edges.x, edges.y, limit);
+    hdrp_v2 y = hdrp_i_cull_window(edges.z, edges.w, limit);
+    c.window = hdrp_v4_make(x.x, y.x, x.y, y.y);
+    return c;
 }
 
 /** A perspective camera; the window may be off centre, as that of an eye of a headset.
@@ -155,10 +173,8 @@ HDRP_FN hdrp_cull_camera hdrp_cull_camera_perspective(hdrp_v3 eye, hdrp_v3 forwa
                                                       float far_m)
 {
     hdrp_cull_camera c = hdrp_i_cull_camera(eye, forward, up, near_m, far_m);
-    hdrp_v2 x = hdrp_i_cull_window(tan_left, tan_right, HDRP_CULL_TANGENT_MAX);
-    hdrp_v2 y = hdrp_i_cull_window(tan_bottom, tan_top, HDRP_CULL_TANGENT_MAX);
-    c.window = hdrp_v4_make(x.x, y.x, x.y, y.y);
-    return c;
+    return hdrp_i_cull_with_window(c, hdrp_v4_make(tan_left, tan_right, tan_bottom, tan_top),
+                                   HDRP_CULL_TANGENT_MAX);
 }
 
 /** An orthographic camera.
@@ -180,11 +196,8 @@ HDRP_FN hdrp_cull_camera hdrp_cull_camera_orthographic(hdrp_v3 eye, hdrp_v3 forw
                                                        float top_m, float near_m, float far_m)
 {
     hdrp_cull_camera c = hdrp_i_cull_camera(eye, forward, up, near_m, far_m);
-    hdrp_v2 x = hdrp_i_cull_window(left_m, right_m, 1e9f);
-    hdrp_v2 y = hdrp_i_cull_window(bottom_m, top_m, 1e9f);
     c.forward_orthographic.w = 1.0f;
-    c.window = hdrp_v4_make(x.x, y.x, x.y, y.y);
-    return c;
+    return hdrp_i_cull_with_window(c, hdrp_v4_make(left_m, right_m, bottom_m, top_m), 1e9f);
 }
 
 /** A position as the camera sees it.
@@ -578,6 +591,19 @@ HDRP_FN hdrp_v3 hdrp_i_cull_pyramid_edge(hdrp_cull_shape s, hdrp_u32 i)
     return hdrp_i_cull_unit(e, hdrp_v3_from_v4(s.forward_half));
 }
 
+/* The middle of a side of a pyramid: right, left, up, down. */
+HDRP_FN hdrp_v3 hdrp_i_cull_pyramid_side(hdrp_cull_shape s, hdrp_u32 i)
+{
+    hdrp_v2 a = hdrp_i_cull_wider(s.half_angle.x, s.half_angle.y);
+    hdrp_v4 axis = s.right_half;
+    if (i >= 2u) {
+        a = hdrp_i_cull_wider(s.half_angle.z, s.half_angle.w);
+        axis = s.up_half;
+    }
+    return hdrp_i_cull_mad(hdrp_v3_scale(hdrp_v3_from_v4(s.forward_half), a.x),
+                           hdrp_v3_from_v4(axis), (i & 1u) != 0u ? -a.y : a.y);
+}
+
 /* The plane of the eye and an edge, where the pyramid is on one side of it. */
 HDRP_FN hdrp_v4 hdrp_i_cull_pyramid_outline(hdrp_cull_shape s, hdrp_u32 i, float orthographic)
 {
@@ -594,6 +620,8 @@ HDRP_FN hdrp_v4 hdrp_i_cull_pyramid_outline(hdrp_cull_shape s, hdrp_u32 i, float
     }
     for (k = 0u; k < 4u; ++k) {
         reach = hdrp_max(reach, hdrp_i_cull_dot(n, hdrp_i_cull_pyramid_edge(s, k)));
+        /* Where a half angle is 90 degrees, two edges are one, and the sides say more. */
+        reach = hdrp_max(reach, hdrp_i_cull_dot(n, hdrp_i_cull_pyramid_side(s, k)));
     }
     /* The edges are wider than the pyramid, by more than the direction of n is uncertain. */
     if (length2 > 1e-4f && reach < 5e-7f) {
@@ -638,7 +666,7 @@ HDRP_FN hdrp_v4 hdrp_i_cull_box_touch(hdrp_cull_shape s, hdrp_v3 n)
     float round_part = 1.0f;
     float size = s.right_half.w + s.up_half.w + s.forward_half.w + s.center_range.w;
     if (hdrp_cull_shape_kind(s) == HDRP_CULL_KIND_FRONT && cosine < 0.0f) {
-        round_part = hdrp_sqrt(hdrp_max(1.0f - cosine * cosine, 0.0f));
+        round_part = hdrp_i_cull_sine(n, hdrp_v3_from_v4(s.forward_half));
     }
     return hdrp_v4_from_v3(n, hdrp_i_cull_dot(n, c) + (x + y + z) + s.center_range.w * round_part +
                                   HDRP_CULL_MARGIN * size + hdrp_i_cull_margin(c));
@@ -1002,7 +1030,7 @@ HDRP_FN hdrp_v2 hdrp_i_cull_px(hdrp_v2 range, float edge, float size, float size
 }
 
 /** The part of the picture in which a ball can be seen.
- *  ball       any        xyz centre in view space, w radius >= 0
+ *  ball       any        xyz centre in view space, w radius, rounded up: hdrp_cull_shape_ball
  *  camera     valid
  *  width_px   [1,16384]  of the picture
  *  height_px  [1,16384]  of the picture
@@ -1010,7 +1038,8 @@ HDRP_FN hdrp_v2 hdrp_i_cull_px(hdrp_v2 range, float edge, float size, float size
  *             where it is behind, beyond or beside the picture
  *  edges      around the camera: the whole picture; across the near distance: what is behind that
  *             does not count
- *  error      none: encloses; by at most 0.1 px where the window is less wide than 120 degrees
+ *  error      none: encloses what was rounded up; by at most 0.1 px where the window is less wide
+ *             than 120 degrees, the ball beyond the near distance and 0.1 % away from the eye
  *  source     tangents of a circle through the eye, after Mara and McGuire 2013, "2D Polyhedral
  *             Bounds of a Clipped, Perspective-Projected 3D Sphere" */
 HDRP_FN hdrp_cull_bounds hdrp_cull_ball_bounds(hdrp_v4 ball, hdrp_cull_camera camera,
@@ -1061,7 +1090,8 @@ HDRP_FN hdrp_v2 hdrp_i_cull_cone_of(hdrp_cull_shape s)
     float z = a.x * a.z;
     float r2 = a.y * a.y * (a.z * a.z) + a.x * a.x * (a.w * a.w);
     float k = 1.0f / hdrp_sqrt(hdrp_max(z * z + r2, 1e-20f));
-    hdrp_v2 cone = hdrp_v2_make(z * k, hdrp_sqrt(r2) * k);
+    /* Two half angles of 90 degrees leave no edges: half of the ball. */
+    hdrp_v2 cone = hdrp_v2_make(z * k, z * z + r2 > 1e-18f ? hdrp_sqrt(r2) * k : 1.0f);
     if (hdrp_cull_shape_kind(s) == HDRP_CULL_KIND_CONE) {
         cone = hdrp_v2_make(a.x, a.y);
     }
@@ -1081,10 +1111,9 @@ HDRP_FN hdrp_v4 hdrp_i_cull_cone_ball(hdrp_cull_shape s, hdrp_v2 cone)
                                   hdrp_i_cull_margin(apex));
 }
 
-/* Depths of a cone with a cap: how far it reaches along a direction, in ranges. */
-HDRP_FN float hdrp_i_cull_cone_reach(hdrp_v2 cone, float cosine)
+/* How far a cone with a cap reaches along a direction, in ranges, from the angle to its axis. */
+HDRP_FN float hdrp_i_cull_cone_reach(hdrp_v2 cone, float cosine, float sine)
 {
-    float sine = hdrp_sqrt(hdrp_max(1.0f - cosine * cosine, 0.0f));
     float rim = cosine * cone.x + sine * cone.y;
     return cosine >= cone.x ? 1.0f : hdrp_max(rim, 0.0f);
 }
@@ -1106,6 +1135,8 @@ HDRP_FN hdrp_cull_bounds hdrp_cull_shape_bounds(hdrp_cull_shape shape, hdrp_cull
     hdrp_cull_bounds r =
         hdrp_cull_ball_bounds(hdrp_cull_shape_ball(shape), camera, width_px, height_px);
     float cosine = shape.forward_half.z;
+    float sine =
+        hdrp_i_cull_sine(hdrp_v3_from_v4(shape.forward_half), hdrp_v3_make(0.0f, 0.0f, 1.0f));
     float z0 = r.nearest;
     float z1 = r.farthest;
     hdrp_v2 cone = hdrp_i_cull_cone_of(shape);
@@ -1116,8 +1147,8 @@ HDRP_FN hdrp_cull_bounds hdrp_cull_shape_bounds(hdrp_cull_shape shape, hdrp_cull
                        4.0f * HDRP_CULL_MARGIN * range;
         r = hdrp_i_cull_both(r, hdrp_cull_ball_bounds(hdrp_i_cull_cone_ball(shape, cone), camera,
                                                       width_px, height_px));
-        z0 = shape.center_range.z - range * hdrp_i_cull_cone_reach(cone, -cosine) - margin;
-        z1 = shape.center_range.z + range * hdrp_i_cull_cone_reach(cone, cosine) + margin;
+        z0 = shape.center_range.z - range * hdrp_i_cull_cone_reach(cone, -cosine, sine) - margin;
+        z1 = shape.center_range.z + range * hdrp_i_cull_cone_reach(cone, cosine, sine) + margin;
     }
     if (kind >= HDRP_CULL_KIND_BOX) {
         z1 = hdrp_i_cull_box_touch(shape, hdrp_v3_make(0.0f, 0.0f, 1.0f)).w;
