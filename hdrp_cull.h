@@ -491,6 +491,8 @@ HDRP_API hdrp_result hdrp_cull_masks(const hdrp_cull_lists* lists, uint32_t firs
 /* Lists are the same bits whether or not the target has fused multiply-adds. */
 #if defined(__clang__)
 #pragma STDC FP_CONTRACT OFF
+#pragma clang diagnostic push
+#pragma clang diagnostic ignored "-Wpass-failed" /* where loops are not to be vectorised */
 #elif defined(__GNUC__)
 #pragma GCC push_options
 #pragma GCC optimize("fp-contract=off")
@@ -907,11 +909,10 @@ typedef struct hdrp_i_cull_scratch {
     uint8_t *hit_first, *hit_last;
     uint16_t* blocks; /* what it reaches */
     uint16_t* keep;   /* 0 where there is no room */
-    uint32_t* inside; /* 1 where its ball contains all that a tile shows, or a pixel */
     uint64_t* order;  /* by importance */
     /* Pixels of a tile. */
-    float *pixel_x, *pixel_y, *pixel_z;
-    uint32_t* reached; /* 1 for a pixel of a band that a shape reaches */
+    float *local_x, *local_y, *pixel_x, *pixel_y, *pixel_z;
+    float *row, *column_nearest, *column_farthest;
     uint32_t capacity;
 } hdrp_i_cull_scratch;
 
@@ -943,11 +944,10 @@ static size_t hdrp_i_cull_place_scratch(hdrp_i_cull_scratch* s, const hdrp_cull_
                                         uint32_t columns, void* memory)
 {
     hdrp_i_cull_arena a;
-    size_t n = d->shape_capacity;
+    size_t n = ((size_t)d->shape_capacity + 7u) & ~(size_t)7u;
     size_t across = (columns + hdrp_i_cull_coarse_tiles(d->tile_width_px) - 1u) /
                     hdrp_i_cull_coarse_tiles(d->tile_width_px);
-    size_t pixels =
-        (d->flags & HDRP_CULL_PIXELS) ? (size_t)d->tile_width_px * d->tile_height_px : 0u;
+    size_t pixels = 0u, across_px = 0u;
     float** of_shapes[] = {&s->left,    &s->upper,    &s->right,       &s->lower,
                            &s->nearest, &s->farthest, &s->x,           &s->y,
                            &s->z,       &s->radius,   &s->hit_nearest, &s->hit_farthest};
@@ -955,6 +955,10 @@ static size_t hdrp_i_cull_place_scratch(hdrp_i_cull_scratch* s, const hdrp_cull_
     size_t i;
     a.block = (unsigned char*)memory;
     a.used = 0u;
+    if (d->flags & HDRP_CULL_PIXELS) {
+        across_px = (d->tile_width_px + 3u) / 4u * 4u;
+        pixels = across_px * ((d->tile_height_px + 3u) / 4u * 4u);
+    }
     s->capacity = d->shape_capacity;
     s->coarse = (uint16_t*)hdrp_i_cull_take(&a, across * n, sizeof(uint16_t));
     s->coarse_count = (uint32_t*)hdrp_i_cull_take(&a, across, sizeof(uint32_t));
@@ -965,14 +969,17 @@ static size_t hdrp_i_cull_place_scratch(hdrp_i_cull_scratch* s, const hdrp_cull_
         *indices[i] = (uint16_t*)hdrp_i_cull_take(&a, n, sizeof(uint16_t));
     }
     s->overlaps = (uint32_t*)hdrp_i_cull_take(&a, n, sizeof(uint32_t));
-    s->inside = (uint32_t*)hdrp_i_cull_take(&a, n, sizeof(uint32_t));
     s->hit_first = (uint8_t*)hdrp_i_cull_take(&a, n, 1u);
     s->hit_last = (uint8_t*)hdrp_i_cull_take(&a, n, 1u);
     s->order = (uint64_t*)hdrp_i_cull_take(&a, n, sizeof(uint64_t));
+    s->local_x = hdrp_i_cull_floats(&a, pixels);
+    s->local_y = hdrp_i_cull_floats(&a, pixels);
     s->pixel_x = hdrp_i_cull_floats(&a, pixels);
     s->pixel_y = hdrp_i_cull_floats(&a, pixels);
     s->pixel_z = hdrp_i_cull_floats(&a, pixels);
-    s->reached = (uint32_t*)hdrp_i_cull_take(&a, pixels, sizeof(uint32_t));
+    s->row = hdrp_i_cull_floats(&a, across_px);
+    s->column_nearest = hdrp_i_cull_floats(&a, across_px);
+    s->column_farthest = hdrp_i_cull_floats(&a, across_px);
     return a.used;
 }
 
@@ -1047,6 +1054,10 @@ static void hdrp_i_cull_gather(hdrp_i_cull_job* job, uint32_t column)
         s->farthest[m] = b->farthest;
         job->candidate_end[hdrp_cull_shape_category(job->set->shapes[i])] = m + 1u;
     }
+    for (; m < ((count + 7u) & ~7u); ++m) {
+        s->left[m] = s->upper[m] = s->right[m] = s->lower[m] = 0.0f;
+        s->nearest[m] = s->farthest[m] = 0.0f;
+    }
     for (category = 1u; category < HDRP_CULL_CATEGORY_COUNT; ++category) {
         if (job->candidate_end[category] < job->candidate_end[category - 1u]) {
             job->candidate_end[category] = job->candidate_end[category - 1u];
@@ -1055,6 +1066,9 @@ static void hdrp_i_cull_gather(hdrp_i_cull_job* job, uint32_t column)
 }
 
 /* ---- tests of candidates --------------------------------------------------------------------- */
+
+/* Arrays are as long as whole vectors, so that no loop has a rest to be done one by one. */
+#define HDRP_I_CULL_WHOLE(count) (((count) + 7u) & ~7u)
 
 /* Depths are looked up with functions that may be contracted elsewhere: hdrp_cull_slice. */
 #define HDRP_I_CULL_DEPTH_MARGIN 2e-6f
@@ -1071,7 +1085,7 @@ static void hdrp_i_cull_test_bounds(const hdrp_i_cull_job* job, float lo, float 
     uint32_t* overlaps = s->overlaps;
     float x0 = (float)(int)job->x0, y0 = (float)(int)job->y0;
     float x1 = (float)(int)job->x1, y1 = (float)(int)job->y1;
-    uint32_t count = job->candidate_end[HDRP_CULL_CATEGORY_COUNT - 1u], m;
+    uint32_t count = HDRP_I_CULL_WHOLE(job->candidate_end[HDRP_CULL_CATEGORY_COUNT - 1u]), m;
     lo *= 1.0f - HDRP_I_CULL_DEPTH_MARGIN;
     hi *= 1.0f + HDRP_I_CULL_DEPTH_MARGIN;
     HDRP_I_CULL_INDEPENDENT
@@ -1110,6 +1124,10 @@ static void hdrp_i_cull_select(hdrp_i_cull_job* job, float lo, float hi)
         s->hit_nearest[n] = hdrp_max(s->nearest[m], lo);
         s->hit_farthest[n] = hdrp_min(s->farthest[m], hi);
     }
+    for (; n < HDRP_I_CULL_WHOLE(job->hit_count); ++n) {
+        s->x[n] = s->y[n] = s->z[n] = s->radius[n] = 0.0f;
+        s->hit_nearest[n] = s->hit_farthest[n] = 0.0f;
+    }
 }
 
 static void hdrp_i_cull_test_balls(const hdrp_i_cull_job* job, hdrp_cull_tile tile,
@@ -1121,7 +1139,7 @@ static void hdrp_i_cull_test_balls(const hdrp_i_cull_job* job, hdrp_cull_tile ti
     const float* radius = job->s.radius;
     float* nearest = job->s.hit_nearest;
     float* farthest = job->s.hit_farthest;
-    uint32_t count = job->hit_count, h;
+    uint32_t count = HDRP_I_CULL_WHOLE(job->hit_count), h;
     /* The constant last argument leaves one loop without the other projection in it. */
     if (orthographic > 0.0f) {
         HDRP_I_CULL_INDEPENDENT
@@ -1194,17 +1212,22 @@ static void hdrp_i_cull_keep(hdrp_i_cull_job* job, const uint16_t* marks)
     uint32_t h = 0u, n = 0u, category;
     for (category = 0u; category < HDRP_CULL_CATEGORY_COUNT; ++category) {
         for (; h < job->hit_end[category]; ++h) {
-            uint16_t kept = marks[h];
-            hdrp_i_cull_move(&job->s, h, n);
-            n += kept != 0u ? 1u : 0u;
+            if (marks[h] != 0u) {
+                if (n != h) {
+                    hdrp_i_cull_move(&job->s, h, n);
+                }
+                ++n;
+            }
         }
         job->hit_end[category] = n;
     }
     job->hit_count = n;
 }
 
-/* The shapes that reach the rectangle between two depths become hits. */
-static void hdrp_i_cull_find(hdrp_i_cull_job* job, hdrp_cull_tile tile, float lo, float hi)
+/* The shapes that reach the rectangle between two depths become hits; where its pixels will be asked,
+ * those of balls that may reach it. */
+static void hdrp_i_cull_find(hdrp_i_cull_job* job, hdrp_cull_tile tile, float lo, float hi,
+                             int pixels)
 {
     float orthographic = job->lists->camera.forward_orthographic.w;
     uint32_t h;
@@ -1212,7 +1235,9 @@ static void hdrp_i_cull_find(hdrp_i_cull_job* job, hdrp_cull_tile tile, float lo
     if (job->lists->desc.flags & HDRP_CULL_FAST) {
         return;
     }
-    hdrp_i_cull_test_balls(job, tile, orthographic);
+    if (!pixels) {
+        hdrp_i_cull_test_balls(job, tile, orthographic);
+    }
     for (h = 0u; h < job->hit_count; ++h) {
         int there = job->s.hit_nearest[h] <= job->s.hit_farthest[h];
         if (there && hdrp_cull_shape_plane_count(job->set->shapes[job->s.hit[h]]) > 0u) {
@@ -1226,38 +1251,201 @@ static void hdrp_i_cull_find(hdrp_i_cull_job* job, hdrp_cull_tile tile, float lo
 
 /* ---- pixels ---------------------------------------------------------------------------------- */
 
-/* The place that the centre of a pixel shows at a depth. */
-static hdrp_v3 hdrp_i_cull_position(const hdrp_cull_lists* lists, uint32_t x_px, uint32_t y_px,
-                                    float z)
+/* The pixels of a tile lie block by block, sixteen of them, each row by row. Blocks at the edges of
+ * the picture are as large as others: the depth of what is beyond is negative, as that of sky. */
+
+#define HDRP_I_CULL_BLOCKS 16u
+
+/* Where each of the pixels is in the tile: the same for all tiles. */
+static void hdrp_i_cull_place_pixels(const hdrp_i_cull_job* job)
 {
-    hdrp_v4 w = lists->camera.window;
-    float k = lists->camera.forward_orthographic.w > 0.0f ? 1.0f : z;
-    float u = w.x + ((float)(int)x_px + 0.5f) * (w.z / (float)(int)lists->desc.width_px);
-    float v = w.y + ((float)(int)(lists->desc.height_px - y_px) - 0.5f) *
-                        (w.w / (float)(int)lists->desc.height_px);
-    return hdrp_v3_make(u * k, v * k, z);
+    uint32_t width = job->lists->grid.cells.z, height = job->lists->grid.cells.w, block, x, y;
+    size_t n = 0u;
+    for (block = 0u; block < HDRP_I_CULL_BLOCKS; ++block) {
+        for (y = 0u; y < height; ++y) {
+            for (x = 0u; x < width; ++x, ++n) {
+                job->s.local_x[n] = (float)(int)(block % 4u * width + x);
+                job->s.local_y[n] = (float)(int)(block / 4u * height + y);
+            }
+        }
+    }
 }
 
-/* Where the surfaces of a tile are, row by row; depth is negative where there is only sky. */
-static void hdrp_i_cull_read_pixels(hdrp_i_cull_job* job)
+/* Moves a row of a tile to its four blocks. */
+static void hdrp_i_cull_scatter(const float* row, uint32_t width, uint32_t of_block, float* z)
+{
+    uint32_t block, x;
+    for (block = 0u; block < 4u; ++block, z += of_block, row += width) {
+        if (width == 4u) { /* as in tiles of 16 pixels: without a loop */
+            memcpy(z, row, 4u * sizeof *z);
+            continue;
+        }
+        for (x = 0u; x < width; ++x) {
+            z[x] = row[x];
+        }
+    }
+}
+
+/* The nearest and the farthest depth of each block. */
+typedef struct hdrp_i_cull_ranges {
+    float nearest[HDRP_I_CULL_BLOCKS], farthest[HDRP_I_CULL_BLOCKS];
+} hdrp_i_cull_ranges;
+
+/* Those of a band of four blocks, from those of its columns. */
+static void hdrp_i_cull_reduce_band(const hdrp_i_cull_scratch* s, uint32_t width, uint32_t band,
+                                    hdrp_i_cull_ranges* ranges)
+{
+    uint32_t block, x;
+    for (block = 0u; block < 4u; ++block) {
+        float nearest = s->column_nearest[block * width],
+              farthest = s->column_farthest[block * width];
+        for (x = block * width + 1u; x < (block + 1u) * width; ++x) {
+            nearest = hdrp_min(s->column_nearest[x], nearest);
+            farthest = hdrp_max(s->column_farthest[x], farthest);
+        }
+        ranges->nearest[4u * band + block] = nearest;
+        ranges->farthest[4u * band + block] = farthest;
+    }
+}
+
+/* Depths of a tile. */
+static void hdrp_i_cull_read_depth(const hdrp_i_cull_job* job, hdrp_i_cull_ranges* ranges)
+{
+    const hdrp_i_cull_scratch* s = &job->s;
+    uint32_t width = job->lists->grid.cells.z, height = job->lists->grid.cells.w;
+    uint32_t of_block = width * height, columns = job->x1 - job->x0, rows = job->y1 - job->y0;
+    uint32_t band, y, i;
+    for (i = 0u; i < 4u * width; ++i) {
+        s->row[i] = -1.0f;
+    }
+    for (band = 0u; band < 4u; ++band) {
+        for (i = 0u; i < 4u * width; ++i) {
+            s->column_nearest[i] = HDRP_FLT_MAX;
+            s->column_farthest[i] = -1.0f;
+        }
+        for (y = band * height; y < (band + 1u) * height; ++y) {
+            if (y < rows) {
+                hdrp_i_cull_read(job->depth, &job->lists->camera,
+                                 job->depth->texels + (job->y0 + y) * job->depth->row_stride +
+                                     job->x0,
+                                 columns, s->row);
+                hdrp_i_cull_widen(s->row, columns, s->column_nearest, s->column_farthest);
+            } else {
+                memset(s->row, 0xff, 4u * width * sizeof *s->row); /* NaN: not seen either */
+            }
+            hdrp_i_cull_scatter(s->row, width, of_block,
+                                s->pixel_z + (size_t)(band * 4u) * of_block +
+                                    (y - band * height) * width);
+        }
+        hdrp_i_cull_reduce_band(s, width, band, ranges);
+    }
+}
+
+/* Places of the pixels' centres, in view space. */
+static void hdrp_i_cull_read_pixels(const hdrp_i_cull_job* job, hdrp_i_cull_ranges* ranges)
 {
     const hdrp_cull_lists* lists = job->lists;
-    uint32_t width = job->x1 - job->x0, x, y, i;
-    for (y = job->y0; y < job->y1; ++y) {
-        const float* texels = job->depth->texels + y * job->depth->row_stride + job->x0;
-        float* pixel_x = job->s.pixel_x + (size_t)(y - job->y0) * width;
-        float* pixel_y = job->s.pixel_y + (size_t)(y - job->y0) * width;
-        float* pixel_z = job->s.pixel_z + (size_t)(y - job->y0) * width;
-        for (x = 0u; x < width; x += HDRP_I_CULL_RUN) {
-            uint32_t count = width - x < HDRP_I_CULL_RUN ? width - x : HDRP_I_CULL_RUN;
-            hdrp_i_cull_read(job->depth, &lists->camera, texels + x, count, pixel_z + x);
+    const float* local_x = job->s.local_x;
+    const float* local_y = job->s.local_y;
+    const float* z = job->s.pixel_z;
+    float* x = job->s.pixel_x;
+    float* y = job->s.pixel_y;
+    hdrp_v4 w = lists->camera.window;
+    float flat = lists->camera.forward_orthographic.w;
+    float du = w.z / (float)lists->desc.width_px, dv = w.w / (float)lists->desc.height_px;
+    float x0 = (float)job->x0 + 0.5f;
+    float y0 = (float)lists->desc.height_px - (float)job->y0 - 0.5f;
+    uint32_t count = HDRP_I_CULL_BLOCKS * lists->grid.cells.z * lists->grid.cells.w, i;
+    hdrp_i_cull_read_depth(job, ranges);
+    HDRP_I_CULL_INDEPENDENT
+    for (i = 0u; i < count; ++i) {
+        float k = flat > 0.0f ? 1.0f : z[i];
+        x[i] = (w.x + (x0 + local_x[i]) * du) * k;
+        y[i] = (w.y + (y0 - local_y[i]) * dv) * k;
+    }
+}
+
+/* Boxes around what rectangles of the picture show between two depths. */
+typedef struct hdrp_i_cull_boxes {
+    float x0[HDRP_I_CULL_BLOCKS], x1[HDRP_I_CULL_BLOCKS];
+    float y0[HDRP_I_CULL_BLOCKS], y1[HDRP_I_CULL_BLOCKS];
+    float z0[HDRP_I_CULL_BLOCKS], z1[HDRP_I_CULL_BLOCKS];
+} hdrp_i_cull_boxes;
+
+static void hdrp_i_cull_set_box(hdrp_i_cull_boxes* b, uint32_t i, const float window[4],
+                                float nearest, float farthest, float orthographic)
+{
+    float k0 = orthographic > 0.0f ? 1.0f : nearest, k1 = orthographic > 0.0f ? 1.0f : farthest;
+    b->x0[i] = hdrp_min(window[0] * k0, window[0] * k1);
+    b->x1[i] = hdrp_max(window[1] * k0, window[1] * k1);
+    b->y0[i] = hdrp_min(window[2] * k0, window[2] * k1);
+    b->y1[i] = hdrp_max(window[3] * k0, window[3] * k1);
+    b->z0[i] = nearest;
+    b->z1[i] = farthest;
+}
+
+/* A box around the surfaces of each block; one that shows only sky is out of everything's reach. */
+static void hdrp_i_cull_box_blocks(const hdrp_i_cull_job* job, const hdrp_cull_tile* tile,
+                                   const hdrp_i_cull_ranges* ranges, hdrp_i_cull_boxes* boxes)
+{
+    const hdrp_cull_lists* lists = job->lists;
+    float du = lists->camera.window.z / (float)lists->desc.width_px * (float)lists->grid.cells.z;
+    float dv = lists->camera.window.w / (float)lists->desc.height_px * (float)lists->grid.cells.w;
+    uint32_t block;
+    for (block = 0u; block < HDRP_I_CULL_BLOCKS; ++block) {
+        float column = (float)(block % 4u), row = (float)(block / 4u), window[4];
+        float nearest = ranges->nearest[block], farthest = ranges->farthest[block];
+        /* As wide as the window of the tile, which is a little wider than its pixels. */
+        window[0] = tile->window.x + column * du;
+        window[1] = hdrp_max(tile->window.y - (3.0f - column) * du, window[0] + du);
+        window[3] = tile->window.w - row * dv;
+        window[2] = hdrp_min(tile->window.z + (3.0f - row) * dv, window[3] - dv);
+        if (farthest < 0.0f) {
+            nearest = farthest = 2.0f * HDRP_LIGHT_RANGE_INFINITE;
         }
-        HDRP_I_CULL_INDEPENDENT
-        for (i = 0u; i < width; ++i) {
-            hdrp_v3 p = hdrp_i_cull_position(lists, job->x0 + i, y, pixel_z[i]);
-            pixel_x[i] = p.x;
-            pixel_y[i] = p.y;
-        }
+        hdrp_i_cull_set_box(boxes, block, window, nearest, farthest,
+                            lists->camera.forward_orthographic.w);
+    }
+}
+
+/* Of each block: 0 out of reach of a ball, 1 perhaps in reach, 3 inside. Returns the bits of all. */
+static uint32_t hdrp_i_cull_ball_in_blocks(const hdrp_i_cull_boxes* b, hdrp_v4 ball,
+                                           uint32_t found[HDRP_I_CULL_BLOCKS])
+{
+    float r2 = ball.w * ball.w;
+    uint32_t any = 0u, i;
+    HDRP_I_CULL_INDEPENDENT
+    for (i = 0u; i < HDRP_I_CULL_BLOCKS; ++i) {
+        float ax = b->x0[i] - ball.x, bx = ball.x - b->x1[i];
+        float ay = b->y0[i] - ball.y, by = ball.y - b->y1[i];
+        float az = b->z0[i] - ball.z, bz = ball.z - b->z1[i];
+        float near_x = hdrp_max(hdrp_max(ax, bx), 0.0f), far_x = hdrp_min(ax, bx);
+        float near_y = hdrp_max(hdrp_max(ay, by), 0.0f), far_y = hdrp_min(ay, by);
+        float near_z = hdrp_max(hdrp_max(az, bz), 0.0f), far_z = hdrp_min(az, bz);
+        float nearest2 = near_x * near_x + near_y * near_y + near_z * near_z;
+        float farthest2 = far_x * far_x + far_y * far_y + far_z * far_z;
+        found[i] = (nearest2 <= r2 ? 1u : 0u) | (farthest2 <= r2 ? 2u : 0u);
+        any |= found[i];
+    }
+    return any;
+}
+
+/* Marks the hits whose ball contains a box: its farthest corner. */
+static void hdrp_i_cull_balls_around_box(const hdrp_i_cull_job* job, const hdrp_i_cull_boxes* b)
+{
+    const float* x = job->s.x;
+    const float* y = job->s.y;
+    const float* z = job->s.z;
+    const float* radius = job->s.radius;
+    uint32_t* around = job->s.overlaps;
+    float x0 = b->x0[0], x1 = b->x1[0], y0 = b->y0[0], y1 = b->y1[0], z0 = b->z0[0], z1 = b->z1[0];
+    uint32_t count = HDRP_I_CULL_WHOLE(job->hit_count), h;
+    HDRP_I_CULL_INDEPENDENT
+    for (h = 0u; h < count; ++h) {
+        float dx = hdrp_max(x[h] - x0, x1 - x[h]);
+        float dy = hdrp_max(y[h] - y0, y1 - y[h]);
+        float dz = hdrp_max(z[h] - z0, z1 - z[h]);
+        around[h] = dx * dx + dy * dy + dz * dz <= radius[h] * radius[h] ? 1u : 0u;
     }
 }
 
@@ -1269,15 +1457,13 @@ HDRP_FN uint32_t hdrp_i_cull_reach_kind(const hdrp_i_cull_scratch* s, hdrp_cull_
     const float* x = s->pixel_x + first;
     const float* y = s->pixel_y + first;
     const float* z = s->pixel_z + first;
-    uint32_t* reached = s->reached;
     uint32_t any = 0u, i;
     shape.bits.x = kind;
     HDRP_I_CULL_INDEPENDENT
     for (i = 0u; i < count; ++i) {
         float in = hdrp_cull_shape_contains(shape, hdrp_v3_make(x[i], y[i], z[i]));
         float seen = z[i] >= 0.0f ? in : 0.0f;
-        reached[i] = seen > 0.0f ? 1u : 0u;
-        any |= reached[i];
+        any |= seen > 0.0f ? 1u : 0u;
     }
     return any;
 }
@@ -1299,161 +1485,58 @@ static uint32_t hdrp_i_cull_reach(const hdrp_i_cull_scratch* s, const hdrp_cull_
     }
 }
 
-/* Which of the four blocks across a band of rows have a pixel that was reached. */
-static uint32_t hdrp_i_cull_blocks_of_band(const hdrp_i_cull_job* job, uint32_t rows)
+/* Which blocks of a tile a hit reaches; without HDRP_CULL_BLOCKS all where it reaches one. */
+static uint32_t hdrp_i_cull_blocks_reached(const hdrp_i_cull_job* job, uint32_t h,
+                                           const hdrp_i_cull_boxes* boxes)
 {
-    uint32_t* reached = job->s.reached;
-    uint32_t width = job->x1 - job->x0, block_width = job->lists->grid.cells.z;
-    uint32_t bits = 0u, block = 0u, row, x, end;
-    for (row = 1u; row < rows; ++row) {
-        const uint32_t* below = reached + (size_t)row * width;
-        HDRP_I_CULL_INDEPENDENT
-        for (x = 0u; x < width; ++x) {
-            reached[x] |= below[x];
-        }
-    }
-    for (x = 0u; x < width; ++block) {
-        uint32_t any = 0u;
-        end = x + block_width < width ? x + block_width : width;
-        for (; x < end; ++x) {
-            any |= reached[x];
-        }
-        bits |= any << block;
-    }
-    return bits;
-}
-
-/* Which sixteenths of a tile a shape reaches; without HDRP_CULL_BLOCKS all where it reaches one. */
-static uint32_t hdrp_i_cull_blocks_reached(const hdrp_i_cull_job* job, const hdrp_cull_shape* shape)
-{
-    uint32_t width = job->x1 - job->x0, height = job->y1 - job->y0;
-    uint32_t band_height = job->lists->grid.cells.w, bits = 0u, band;
+    const hdrp_i_cull_scratch* s = &job->s;
+    const hdrp_cull_shape* shape = &job->set->shapes[s->hit[h]];
+    uint32_t of_block = job->lists->grid.cells.z * job->lists->grid.cells.w;
+    uint32_t found[HDRP_I_CULL_BLOCKS], bits = 0u, block;
+    /* Inside its ball is inside a shape only if it is one. */
+    uint32_t sure = hdrp_cull_shape_kind(*shape) == HDRP_CULL_KIND_BALL ? 2u : 0u;
     int all = (job->lists->desc.flags & HDRP_CULL_BLOCKS) != 0u;
-    for (band = 0u; band * band_height < height; ++band) {
-        uint32_t row = band * band_height;
-        uint32_t rows = height - row < band_height ? height - row : band_height;
-        uint32_t any = hdrp_i_cull_reach(&job->s, shape, row * width, rows * width);
-        if (any && !all) {
-            return 0xffffu;
-        }
-        bits |= any ? hdrp_i_cull_blocks_of_band(job, rows) << (4u * band) : 0u;
+    uint32_t any = hdrp_i_cull_ball_in_blocks(
+        boxes, hdrp_v4_make(s->x[h], s->y[h], s->z[h], s->radius[h]), found);
+    if (any == 0u || (!all && (any & sure))) {
+        return any == 0u ? 0u : 0xffffu;
     }
-    return bits;
-}
-
-/* The box around the surfaces of a tile. */
-typedef struct hdrp_i_cull_box {
-    hdrp_v3 lo, hi;
-} hdrp_i_cull_box;
-
-static hdrp_i_cull_box hdrp_i_cull_box_of_tile(hdrp_cull_tile tile, hdrp_v4 info,
-                                               float orthographic)
-{
-    hdrp_i_cull_box b;
-    float k0 = orthographic > 0.0f ? 1.0f : info.x, k1 = orthographic > 0.0f ? 1.0f : info.y;
-    hdrp_v4 w = tile.window;
-    b.lo = hdrp_v3_make(hdrp_min(w.x * k0, w.x * k1), hdrp_min(w.z * k0, w.z * k1), info.x);
-    b.hi = hdrp_v3_make(hdrp_max(w.y * k0, w.y * k1), hdrp_max(w.w * k0, w.w * k1), info.y);
-    return b;
-}
-
-/* Whether a shape other than a ball contains the corners of a box. */
-static uint32_t hdrp_i_cull_contains_box(const hdrp_cull_shape* shape, const hdrp_i_cull_box* b)
-{
-    uint32_t i;
-    if (shape->half_angle.x < 0.0f && hdrp_cull_shape_kind(*shape) == HDRP_CULL_KIND_CONE) {
-        return 0u; /* not convex: the corners say nothing of what is between them */
-    }
-    for (i = 0u; i < 8u; ++i) {
-        hdrp_v3 corner = hdrp_v3_make(i & 1u ? b->hi.x : b->lo.x, i & 2u ? b->hi.y : b->lo.y,
-                                      i & 4u ? b->hi.z : b->lo.z);
-        if (hdrp_cull_shape_contains(*shape, corner) <= 0.0f) {
-            return 0u;
+    for (block = 0u; block < HDRP_I_CULL_BLOCKS && (all || bits == 0u); ++block) {
+        if (found[block] & sure) {
+            bits |= 1u << block;
+        } else if (found[block] > 0u) {
+            bits |= hdrp_i_cull_reach(s, shape, block * of_block, of_block) << block;
         }
     }
-    return 1u;
+    return all || bits == 0u ? bits : 0xffffu;
 }
 
-/* Whether the ball of each hit contains a box: its farthest corner. */
-static void hdrp_i_cull_balls_contain_box(const hdrp_i_cull_job* job, hdrp_i_cull_box b)
-{
-    const float* x = job->s.x;
-    const float* y = job->s.y;
-    const float* z = job->s.z;
-    const float* radius = job->s.radius;
-    uint32_t* inside = job->s.inside;
-    uint32_t count = job->hit_count, h;
-    HDRP_I_CULL_INDEPENDENT
-    for (h = 0u; h < count; ++h) {
-        float dx = hdrp_max(x[h] - b.lo.x, b.hi.x - x[h]);
-        float dy = hdrp_max(y[h] - b.lo.y, b.hi.y - y[h]);
-        float dz = hdrp_max(z[h] - b.lo.z, b.hi.z - z[h]);
-        inside[h] = dx * dx + dy * dy + dz * dz <= radius[h] * radius[h] ? 1u : 0u;
-    }
-}
-
-/* Pixels that are asked first, spread over the tile. */
-#define HDRP_I_CULL_PROBES 8u
-
-/* Adds the hits whose ball contains one of a few pixels. */
-static void hdrp_i_cull_probe(const hdrp_i_cull_job* job)
-{
-    const hdrp_cull_lists* lists = job->lists;
-    const float* x = job->s.x;
-    const float* y = job->s.y;
-    const float* z = job->s.z;
-    const float* radius = job->s.radius;
-    uint32_t* inside = job->s.inside;
-    uint32_t width = job->x1 - job->x0, height = job->y1 - job->y0;
-    uint32_t count = job->hit_count, i, h;
-    for (i = 0u; i < HDRP_I_CULL_PROBES; ++i) {
-        uint32_t px = job->x0 + (2u * i + 1u) * width / (2u * HDRP_I_CULL_PROBES);
-        uint32_t py = job->y0 + (2u * (3u * i % HDRP_I_CULL_PROBES) + 1u) * height /
-                                    (2u * HDRP_I_CULL_PROBES);
-        float depth;
-        hdrp_v3 p;
-        hdrp_i_cull_read(job->depth, &lists->camera,
-                         job->depth->texels + py * job->depth->row_stride + px, 1u, &depth);
-        if (depth < 0.0f) {
-            continue;
-        }
-        p = hdrp_i_cull_position(lists, px, py, depth);
-        HDRP_I_CULL_INDEPENDENT
-        for (h = 0u; h < count; ++h) {
-            float dx = x[h] - p.x, dy = y[h] - p.y, dz = z[h] - p.z;
-            inside[h] |= dx * dx + dy * dy + dz * dz <= radius[h] * radius[h] ? 1u : 0u;
-        }
-    }
-}
-
-/* Marks which sixteenths each hit reaches, and drops those that reach none. All pixels are looked at
- * only where a hit does not contain the whole of what the tile shows, or one of a few. */
+/* Marks which blocks each hit reaches, and drops those that reach none. Pixels are looked at only
+ * where a hit does not contain the whole of what the tile shows. */
 static void hdrp_i_cull_test_pixels(hdrp_i_cull_job* job, hdrp_cull_tile tile, hdrp_v4 info)
 {
     hdrp_i_cull_scratch* s = &job->s;
-    int all = (job->lists->desc.flags & HDRP_CULL_BLOCKS) != 0u, read = 0;
-    hdrp_i_cull_box box =
-        hdrp_i_cull_box_of_tile(tile, info, job->lists->camera.forward_orthographic.w);
-    uint32_t h;
-    if (job->hit_count == 0u) {
-        return;
-    }
-    hdrp_i_cull_balls_contain_box(job, box);
-    if (!all) {
-        hdrp_i_cull_probe(job);
-    }
+    hdrp_i_cull_boxes whole, boxes;
+    hdrp_i_cull_ranges ranges;
+    float window[4];
+    uint32_t read = 0u, h;
+    window[0] = tile.window.x;
+    window[1] = tile.window.y;
+    window[2] = tile.window.z;
+    window[3] = tile.window.w;
+    hdrp_i_cull_set_box(&whole, 0u, window, info.x, info.y,
+                        job->lists->camera.forward_orthographic.w);
+    hdrp_i_cull_balls_around_box(job, &whole);
     for (h = 0u; h < job->hit_count; ++h) {
-        const hdrp_cull_shape* shape = &job->set->shapes[s->hit[h]];
-        int ball = hdrp_cull_shape_kind(*shape) == HDRP_CULL_KIND_BALL;
-        /* Of other shapes a pixel is found sooner than eight corners are looked at. */
-        if (ball ? s->inside[h] : all && s->inside[h] && hdrp_i_cull_contains_box(shape, &box)) {
+        if (s->overlaps[h] &&
+            hdrp_cull_shape_kind(job->set->shapes[s->hit[h]]) == HDRP_CULL_KIND_BALL) {
             continue;
         }
-        if (!read) {
-            hdrp_i_cull_read_pixels(job);
-            read = 1;
+        if (read++ == 0u) {
+            hdrp_i_cull_read_pixels(job, &ranges);
+            hdrp_i_cull_box_blocks(job, &tile, &ranges, &boxes);
         }
-        s->blocks[h] = (uint16_t)hdrp_i_cull_blocks_reached(job, shape);
+        s->blocks[h] = (uint16_t)hdrp_i_cull_blocks_reached(job, h, &boxes);
     }
     hdrp_i_cull_keep(job, s->blocks);
 }
@@ -1624,9 +1707,9 @@ static void hdrp_i_cull_build_tile(hdrp_i_cull_job* job, uint32_t column, uint32
     hdrp_cull_tile t = hdrp_i_cull_set_rectangle(job, column, row, 1u, 1u);
     if (lists->desc.slice_count == 1u) {
         /* Nothing is between its depths where there is only sky. */
-        hdrp_i_cull_find(job, t, info.x, info.y);
+        hdrp_i_cull_find(job, t, info.x, info.y, (lists->desc.flags & HDRP_CULL_PIXELS) != 0u);
     } else {
-        hdrp_i_cull_find(job, t, lists->camera.eye_near.w, lists->camera.right_far.w);
+        hdrp_i_cull_find(job, t, lists->camera.eye_near.w, lists->camera.right_far.w, 0);
     }
     hdrp_i_cull_slices(job, info.z);
     for (h = 0u; h < job->hit_count; ++h) {
@@ -1656,7 +1739,7 @@ static void hdrp_i_cull_prune_coarse(hdrp_i_cull_job* job, uint32_t cell, uint32
     hdrp_i_cull_find(job,
                      hdrp_i_cull_set_rectangle(job, first_column, first_row, job->coarse_columns,
                                                job->coarse_rows),
-                     lo, hi);
+                     lo, hi, 0);
     memcpy(job->s.coarse + (size_t)cell * job->s.capacity, job->s.hit,
            job->hit_count * sizeof *job->s.hit);
     job->s.coarse_count[cell] = job->hit_count;
@@ -1710,6 +1793,9 @@ HDRP_API hdrp_result hdrp_cull_build(hdrp_cull_lists* lists, const hdrp_cull_set
     job.depth = depth;
     job.coarse_columns = hdrp_i_cull_coarse_tiles(lists->desc.tile_width_px);
     job.coarse_rows = hdrp_i_cull_coarse_tiles(lists->desc.tile_height_px);
+    if (lists->desc.flags & HDRP_CULL_PIXELS) {
+        hdrp_i_cull_place_pixels(&job);
+    }
     for (row = first_row; row < first_row + row_count; ++row) {
         hdrp_i_cull_build_row(&job, row);
     }
@@ -1780,6 +1866,7 @@ HDRP_API hdrp_result hdrp_cull_masks(const hdrp_cull_lists* lists, uint32_t firs
 
 #if defined(__clang__)
 #pragma STDC FP_CONTRACT DEFAULT
+#pragma clang diagnostic pop
 #elif defined(__GNUC__)
 #pragma GCC pop_options
 #endif
