@@ -73,6 +73,7 @@
 #define HDRP_CULL_ONE_SERIES 2u /* slices at the same depths in all tiles */
 #define HDRP_CULL_PIXELS     4u /* one slice only: keep what reaches a pixel of the depth buffer */
 #define HDRP_CULL_BLOCKS     8u /* the same, for each sixteenth of a tile: hdrp_cull_entry_covers */
+#define HDRP_CULL_MASKS      16u /* the same, for each pixel: hdrp_cull_mask_word */
 
 /* >>grid
  * What a shader needs to find the list of a position. Of each tile it also needs a vector, written
@@ -86,6 +87,10 @@ struct hdrp_cull_grid {
     hdrp_v4 series;   /* x [1e-6,1e9] m, y [-20,30] its log2, z [1e-6,1e18] m, w [0,1e7] scale */
 };
 HDRP_TYPEDEF(hdrp_cull_grid)
+
+#ifndef HDRP_GPU
+typedef char hdrp_i_cull_grid_size_of[sizeof(hdrp_cull_grid) == 48 ? 1 : -1];
+#endif
 
 /** Logarithm to the base 2 for slices: a cubic in each octave, made of +, - and * alone, so that no
  *  device rounds it differently.
@@ -270,6 +275,57 @@ HDRP_FN hdrp_u32 hdrp_cull_entry_covers(hdrp_cull_grid grid, hdrp_u32 entry, hdr
     return (entry >> (16u + ((y & 3u) * 4u + (x & 3u)))) & 1u;
 }
 
+/* Where a pixel is in the mask of a tile: block by block, in each row by row. */
+HDRP_FN hdrp_u32 hdrp_i_cull_mask_place(hdrp_cull_grid grid, hdrp_u32 x_px, hdrp_u32 y_px)
+{
+    hdrp_u32 x = x_px % grid.tiles.x;
+    hdrp_u32 y = y_px % grid.tiles.y;
+    hdrp_u32 block = (y / grid.cells.w) * 4u + x / grid.cells.z;
+    hdrp_u32 in_block = (y % grid.cells.w) * grid.cells.z + x % grid.cells.z;
+    return block * (grid.cells.z * grid.cells.w) + in_block;
+}
+
+/** Words of the mask of an entry: 8 for tiles of 16 x 16 pixels.
+ *  grid     valid
+ *  returns  any
+ *  edges    none
+ *  error    none: a definition
+ *  source   a definition
+ *  note     sixteen blocks of half a word or more: two words are the pixels of 8 x 4 and so on, which
+ *           a group of threads asks together */
+HDRP_FN hdrp_u32 hdrp_cull_mask_words(hdrp_cull_grid grid)
+{
+    return (grid.cells.z * grid.cells.w + 1u) >> 1;
+}
+
+/** The word that says whether the shape of an entry reaches a pixel, in lists with HDRP_CULL_MASKS.
+ *  grid     valid
+ *  entry    any  index of the entry, not the entry
+ *  x_px     any
+ *  y_px     any
+ *  returns  any  index into the masks; hdrp_cull_mask_bit says which bit
+ *  edges    the pixel has to be in the tile of the list
+ *  error    none: a definition
+ *  source   a definition */
+HDRP_FN hdrp_u32 hdrp_cull_mask_word(hdrp_cull_grid grid, hdrp_u32 entry, hdrp_u32 x_px,
+                                     hdrp_u32 y_px)
+{
+    return entry * hdrp_cull_mask_words(grid) + (hdrp_i_cull_mask_place(grid, x_px, y_px) >> 5);
+}
+
+/** The bit of the word that stands for a pixel.
+ *  grid     valid
+ *  x_px     any
+ *  y_px     any
+ *  returns  [0,31]
+ *  edges    none
+ *  error    none: a definition
+ *  source   a definition */
+HDRP_FN hdrp_u32 hdrp_cull_mask_bit(hdrp_cull_grid grid, hdrp_u32 x_px, hdrp_u32 y_px)
+{
+    return hdrp_i_cull_mask_place(grid, x_px, y_px) & 31u;
+}
+
 /** Index of the lowest bit of a word of a bit mask.
  *  word     [1,4294967295]
  *  returns  [0,31]
@@ -366,6 +422,7 @@ typedef struct hdrp_cull_lists {
     hdrp_v4* tiles;          /* see the section grid */
     hdrp_u32x4* cells;       /* see the section lists */
     uint32_t* entries;       /* entry_capacity of each tile, which begins at a multiple of that */
+    uint32_t* masks;         /* of each entry, see hdrp_cull_mask_word; NULL without the flag */
     uint32_t* tile_dropped;  /* shapes that each tile had no room for */
     hdrp_cull_camera camera; /* of hdrp_cull_begin */
 } hdrp_cull_lists;
@@ -649,7 +706,9 @@ HDRP_API hdrp_result hdrp_cull_set_project(hdrp_cull_set* set, const hdrp_cull_s
 
 /* ---- lists ----------------------------------------------------------------------------------- */
 
-/* A block of 64 pixels or less is asked for as a whole first. */
+/* A tile has four times four blocks of pixels. */
+#define HDRP_I_CULL_BLOCKS 16u
+/* A coarse cell of about 64 pixels is asked for as a whole first. */
 #define HDRP_I_CULL_COARSE_PX 64u
 
 /* The descriptor with its defaults; width_px is 0 where it is not valid. */
@@ -668,11 +727,12 @@ static hdrp_cull_desc hdrp_i_cull_defaults(const hdrp_cull_desc* desc)
     if (d.entry_capacity == 0u) {
         d.entry_capacity = d.slice_count > 8u ? 32u * d.slice_count : 256u;
     }
+    d.flags |= (d.flags & HDRP_CULL_MASKS) ? HDRP_CULL_BLOCKS : 0u;
     d.flags |= (d.flags & HDRP_CULL_BLOCKS) ? HDRP_CULL_PIXELS : 0u;
     if (d.width_px > HDRP_CULL_SIZE_MAX || d.height_px > HDRP_CULL_SIZE_MAX || d.height_px < 1u ||
         d.tile_width_px > HDRP_CULL_SIZE_MAX || d.tile_height_px > HDRP_CULL_SIZE_MAX ||
         d.slice_count > HDRP_CULL_SLICES_MAX || d.shape_capacity > HDRP_CULL_SHAPES_MAX ||
-        d.entry_capacity > 65535u * d.slice_count || d.flags > 15u ||
+        d.entry_capacity > 65535u * d.slice_count || d.flags > 31u ||
         ((d.flags & HDRP_CULL_PIXELS) && d.slice_count > 1u) || !(d.series_start_m >= 0.0f) ||
         !(d.series_end_m >= 0.0f)) {
         d.width_px = 0u;
@@ -680,14 +740,22 @@ static hdrp_cull_desc hdrp_i_cull_defaults(const hdrp_cull_desc* desc)
     return d;
 }
 
-/* Columns, rows and their product; 0 where cells or entries cannot be counted with 32 bits. */
+/* Words of a mask; 0 where there are none. */
+static size_t hdrp_i_cull_words(const hdrp_cull_desc* d)
+{
+    size_t of_block = (size_t)((d->tile_width_px + 3u) / 4u) * ((d->tile_height_px + 3u) / 4u);
+    return (d->flags & HDRP_CULL_MASKS) ? (of_block + 1u) / 2u : 0u;
+}
+
+/* Columns, rows and their product; 0 where cells, entries or masks cannot be counted with 32 bits. */
 static uint32_t hdrp_i_cull_tiles(const hdrp_cull_desc* d, uint32_t* columns, uint32_t* rows)
 {
     uint64_t tiles;
     *columns = (d->width_px + d->tile_width_px - 1u) / d->tile_width_px;
     *rows = (d->height_px + d->tile_height_px - 1u) / d->tile_height_px;
     tiles = (uint64_t)*columns * *rows;
-    return tiles * d->slice_count > 0xffffffffu || tiles * d->entry_capacity > 0xffffffffu
+    return tiles * d->slice_count > 0xffffffffu ||
+                   tiles * d->entry_capacity * (1u + hdrp_i_cull_words(d)) > 0xffffffffu
                ? 0u
                : (uint32_t)tiles;
 }
@@ -702,6 +770,11 @@ static size_t hdrp_i_cull_place_lists(hdrp_cull_lists* lists, uint32_t tiles, vo
     lists->tiles = (hdrp_v4*)hdrp_i_cull_take(&arena, tiles, sizeof *lists->tiles);
     lists->cells = (hdrp_u32x4*)hdrp_i_cull_take(&arena, cells, sizeof *lists->cells);
     lists->entries = (uint32_t*)hdrp_i_cull_take(&arena, entries, sizeof *lists->entries);
+    lists->masks = NULL;
+    if (lists->desc.flags & HDRP_CULL_MASKS) {
+        lists->masks = (uint32_t*)hdrp_i_cull_take(
+            &arena, entries * hdrp_i_cull_words(&lists->desc), sizeof *lists->masks);
+    }
     lists->tile_dropped = (uint32_t*)hdrp_i_cull_take(&arena, tiles, sizeof *lists->tile_dropped);
     return arena.used;
 }
@@ -716,10 +789,11 @@ HDRP_API size_t hdrp_cull_memory_size(const hdrp_cull_desc* desc)
         return 0u;
     }
     tiles = hdrp_i_cull_tiles(&lists.desc, &columns, &rows);
-    /* 4-byte entries and 16-byte cells, on a target whose sizes have 32 bits. */
-    if (tiles == 0u || ((uint64_t)tiles * lists.desc.entry_capacity * 4u +
-                        (uint64_t)tiles * lists.desc.slice_count * 16u + (uint64_t)tiles * 20u +
-                        64u) > (uint64_t)(SIZE_MAX / 2u)) {
+    /* 4-byte words and 16-byte cells, on a target whose sizes have 32 bits. */
+    if (tiles == 0u ||
+        ((uint64_t)tiles * lists.desc.entry_capacity * 4u * (1u + hdrp_i_cull_words(&lists.desc)) +
+         (uint64_t)tiles * lists.desc.slice_count * 16u + (uint64_t)tiles * 20u + 64u) >
+            (uint64_t)(SIZE_MAX / 2u)) {
         return 0u;
     }
     return hdrp_i_cull_place_lists(&lists, tiles, NULL);
@@ -908,11 +982,14 @@ typedef struct hdrp_i_cull_scratch {
     float *x, *y, *z, *radius, *hit_nearest, *hit_farthest;
     uint8_t *hit_first, *hit_last;
     uint16_t* blocks; /* what it reaches */
+    uint32_t* masks;  /* the pixels that it reaches */
     uint16_t* keep;   /* 0 where there is no room */
     uint64_t* order;  /* by importance */
     /* Pixels of a tile. */
     float *local_x, *local_y, *pixel_x, *pixel_y, *pixel_z;
     float *row, *column_nearest, *column_farthest;
+    uint32_t* reached; /* 1 for a pixel of a block that a shape reaches */
+    size_t mask_words;
     uint32_t capacity;
 } hdrp_i_cull_scratch;
 
@@ -980,6 +1057,9 @@ static size_t hdrp_i_cull_place_scratch(hdrp_i_cull_scratch* s, const hdrp_cull_
     s->row = hdrp_i_cull_floats(&a, across_px);
     s->column_nearest = hdrp_i_cull_floats(&a, across_px);
     s->column_farthest = hdrp_i_cull_floats(&a, across_px);
+    s->reached = (uint32_t*)hdrp_i_cull_take(&a, pixels / HDRP_I_CULL_BLOCKS, sizeof(uint32_t));
+    s->mask_words = hdrp_i_cull_words(d);
+    s->masks = (uint32_t*)hdrp_i_cull_take(&a, n * s->mask_words, sizeof(uint32_t));
     return a.used;
 }
 
@@ -1204,6 +1284,10 @@ static void hdrp_i_cull_move(hdrp_i_cull_scratch* s, uint32_t from, uint32_t to)
     s->hit_first[to] = s->hit_first[from];
     s->hit_last[to] = s->hit_last[from];
     s->blocks[to] = s->blocks[from];
+    if (s->mask_words > 0u) {
+        memcpy(s->masks + to * s->mask_words, s->masks + from * s->mask_words,
+               s->mask_words * sizeof *s->masks);
+    }
 }
 
 /* Keeps the hits whose mark is not 0. */
@@ -1253,8 +1337,6 @@ static void hdrp_i_cull_find(hdrp_i_cull_job* job, hdrp_cull_tile tile, float lo
 
 /* The pixels of a tile lie block by block, sixteen of them, each row by row. Blocks at the edges of
  * the picture are as large as others: the depth of what is beyond is negative, as that of sky. */
-
-#define HDRP_I_CULL_BLOCKS 16u
 
 /* Where each of the pixels is in the tile: the same for all tiles. */
 static void hdrp_i_cull_place_pixels(const hdrp_i_cull_job* job)
@@ -1449,7 +1531,7 @@ static void hdrp_i_cull_balls_around_box(const hdrp_i_cull_job* job, const hdrp_
     }
 }
 
-/* Whether a shape of a kind reaches one of some pixels. A constant kind leaves a loop without the
+/* Which of some pixels a shape of a kind reaches; returns whether it is any. A constant kind leaves a loop without the
  * other ones in it. */
 HDRP_FN uint32_t hdrp_i_cull_reach_kind(const hdrp_i_cull_scratch* s, hdrp_cull_shape shape,
                                         hdrp_u32 kind, uint32_t first, uint32_t count)
@@ -1457,13 +1539,15 @@ HDRP_FN uint32_t hdrp_i_cull_reach_kind(const hdrp_i_cull_scratch* s, hdrp_cull_
     const float* x = s->pixel_x + first;
     const float* y = s->pixel_y + first;
     const float* z = s->pixel_z + first;
+    uint32_t* reached = s->reached;
     uint32_t any = 0u, i;
     shape.bits.x = kind;
     HDRP_I_CULL_INDEPENDENT
     for (i = 0u; i < count; ++i) {
         float in = hdrp_cull_shape_contains(shape, hdrp_v3_make(x[i], y[i], z[i]));
         float seen = z[i] >= 0.0f ? in : 0.0f;
-        any |= seen > 0.0f ? 1u : 0u;
+        reached[i] = seen > 0.0f ? 1u : 0u;
+        any |= reached[i];
     }
     return any;
 }
@@ -1485,6 +1569,17 @@ static uint32_t hdrp_i_cull_reach(const hdrp_i_cull_scratch* s, const hdrp_cull_
     }
 }
 
+/* Notes the pixels of a block that a hit reaches: those that were found, or all. */
+static void hdrp_i_cull_mask_block(const hdrp_i_cull_scratch* s, uint32_t h, uint32_t block,
+                                   uint32_t of_block, int found)
+{
+    uint32_t* mask = s->masks + h * s->mask_words;
+    uint32_t at = block * of_block, i;
+    for (i = 0u; i < of_block; ++i, ++at) {
+        mask[at / 32u] |= (found ? s->reached[i] : 1u) << (at % 32u);
+    }
+}
+
 /* Which blocks of a tile a hit reaches; without HDRP_CULL_BLOCKS all where it reaches one. */
 static uint32_t hdrp_i_cull_blocks_reached(const hdrp_i_cull_job* job, uint32_t h,
                                            const hdrp_i_cull_boxes* boxes)
@@ -1502,11 +1597,14 @@ static uint32_t hdrp_i_cull_blocks_reached(const hdrp_i_cull_job* job, uint32_t 
         return any == 0u ? 0u : 0xffffu;
     }
     for (block = 0u; block < HDRP_I_CULL_BLOCKS && (all || bits == 0u); ++block) {
-        if (found[block] & sure) {
-            bits |= 1u << block;
-        } else if (found[block] > 0u) {
-            bits |= hdrp_i_cull_reach(s, shape, block * of_block, of_block) << block;
+        uint32_t inside = found[block] & sure, reached = inside ? 1u : 0u;
+        if (found[block] > 0u && !inside) {
+            reached = hdrp_i_cull_reach(s, shape, block * of_block, of_block);
         }
+        if (reached && s->mask_words > 0u) {
+            hdrp_i_cull_mask_block(s, h, block, of_block, !inside);
+        }
+        bits |= reached << block;
     }
     return all || bits == 0u ? bits : 0xffffu;
 }
@@ -1527,9 +1625,13 @@ static void hdrp_i_cull_test_pixels(hdrp_i_cull_job* job, hdrp_cull_tile tile, h
     hdrp_i_cull_set_box(&whole, 0u, window, info.x, info.y,
                         job->lists->camera.forward_orthographic.w);
     hdrp_i_cull_balls_around_box(job, &whole);
+    memset(s->masks, 0, job->hit_count * s->mask_words * sizeof *s->masks);
     for (h = 0u; h < job->hit_count; ++h) {
         if (s->overlaps[h] &&
             hdrp_cull_shape_kind(job->set->shapes[s->hit[h]]) == HDRP_CULL_KIND_BALL) {
+            if (s->mask_words > 0u) {
+                memset(s->masks + h * s->mask_words, 0xff, s->mask_words * sizeof *s->masks);
+            }
             continue;
         }
         if (read++ == 0u) {
@@ -1680,6 +1782,10 @@ static void hdrp_i_cull_write(hdrp_i_cull_job* job, uint32_t tile, uint32_t drop
         for (k = job->s.hit_first[h]; k <= last; ++k) {
             entries[next[k]++] = entry;
         }
+    }
+    if (lists->masks && job->hit_count > 0u) { /* one slice: hits and entries are in one order */
+        memcpy(lists->masks + cells[0].x * job->s.mask_words, job->s.masks,
+               job->hit_count * job->s.mask_words * sizeof *lists->masks);
     }
     lists->tile_dropped[tile] = dropped;
 }
