@@ -1574,9 +1574,15 @@ static void hdrp_i_cull_mask_block(const hdrp_i_cull_scratch* s, uint32_t h, uin
                                    uint32_t of_block, int found)
 {
     uint32_t* mask = s->masks + h * s->mask_words;
-    uint32_t at = block * of_block, i;
-    for (i = 0u; i < of_block; ++i, ++at) {
-        mask[at / 32u] |= (found ? s->reached[i] : 1u) << (at % 32u);
+    uint32_t at = block * of_block, first, i;
+    for (first = 0u; first < of_block; first += i, at += i) {
+        uint32_t room = 32u - at % 32u, left = of_block - first, word = 0u;
+        uint32_t count = left < room ? left : room;
+        const uint32_t* reached = s->reached + first;
+        for (i = 0u; i < count; ++i) {
+            word |= (found ? reached[i] : 1u) << i;
+        }
+        mask[at / 32u] |= word << (at % 32u);
     }
 }
 
