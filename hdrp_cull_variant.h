@@ -8,7 +8,7 @@
  * them, and what it has beyond them is superfluous there. The algorithm layer, C and C++ only, is
  * compiled in one source file:
  *
- *     #define HDRP_CULL_VARIANT_IMPLEMENTATION
+ *     #define HDRP_CULL_IMPLEMENTATION
  *     #include "hdrp_cull_variant.h"
  *
  * Every frame, from a feature word per pixel and one per list of lights to indirect dispatches:
@@ -411,7 +411,7 @@ HDRP_API hdrp_result hdrp_cull_choose_variants(const hdrp_cull_choice_desc* desc
 #endif /* HDRP_GPU */
 #endif /* HDRP_CULL_VARIANT_H */
 
-#if defined(HDRP_CULL_VARIANT_IMPLEMENTATION) && !defined(HDRP_CULL_VARIANT_IMPLEMENTED) &&        \
+#if defined(HDRP_CULL_IMPLEMENTATION) && !defined(HDRP_CULL_VARIANT_IMPLEMENTED) &&                \
     !defined(HDRP_GPU)
 #define HDRP_CULL_VARIANT_IMPLEMENTED
 
@@ -1923,4 +1923,4 @@ HDRP_API hdrp_result hdrp_cull_choose_variants(const hdrp_cull_choice_desc* desc
     return HDRP_OK;
 }
 
-#endif /* HDRP_CULL_VARIANT_IMPLEMENTATION */
+#endif /* HDRP_CULL_IMPLEMENTATION */

@@ -9,7 +9,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#define HDRP_CULL_VARIANT_IMPLEMENTATION
+#define HDRP_CULL_IMPLEMENTATION
 #include "hdrp_cull_variant.h"
 
 /* A number in [0,1) of a fixed sequence (Steele et al. 2014, splitmix64). */

@@ -9,7 +9,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#define HDRP_CULL_VARIANT_IMPLEMENTATION
+#define HDRP_CULL_IMPLEMENTATION
 #include "hdrp_cull_variant.h"
 
 #define GUARD 0xdeadbeefu
