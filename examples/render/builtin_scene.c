@@ -1,108 +1,8 @@
 /* The scene that is shown when no file is given: a display of every material feature. */
-#include "builtin_shape.h"
+#include "builtin_builder.h"
 #include "builtin_texture.h"
-#include "scene.h"
 
-#include <math.h>
-#include <stdio.h>
 #include <string.h>
-
-typedef struct builder {
-    rd_scene* scene;
-    bool ok;
-} builder;
-
-/* >>placing */
-
-static rd_affine translation(float x, float y, float z)
-{
-    rd_affine a = rd_affine_identity();
-    a.t = hdrp_v3_make(x, y, z);
-    return a;
-}
-
-static rd_affine rotation_x(float angle)
-{
-    rd_affine a = rd_affine_identity();
-    a.y = hdrp_v3_make(0.0f, cosf(angle), sinf(angle));
-    a.z = hdrp_v3_make(0.0f, -sinf(angle), cosf(angle));
-    return a;
-}
-
-static rd_affine rotation_y(float angle)
-{
-    rd_affine a = rd_affine_identity();
-    a.x = hdrp_v3_make(cosf(angle), 0.0f, -sinf(angle));
-    a.z = hdrp_v3_make(sinf(angle), 0.0f, cosf(angle));
-    return a;
-}
-
-static rd_affine rotation_z(float angle)
-{
-    rd_affine a = rd_affine_identity();
-    a.x = hdrp_v3_make(cosf(angle), sinf(angle), 0.0f);
-    a.y = hdrp_v3_make(-sinf(angle), cosf(angle), 0.0f);
-    return a;
-}
-
-static int add_material(builder* b, rd_material* m, const char* name)
-{
-    int index;
-    snprintf(m->name, RD_NAME_MAX, "%s", name);
-    rd_material_update_features(m);
-    index = rd_scene_add_material(b->scene, m);
-    b->ok = b->ok && index >= 0;
-    return index;
-}
-
-static void place(builder* b, rd_shape shape, int material, rd_affine where, const char* name)
-{
-    b->ok = b->ok && shape.ok;
-    if (!b->ok) {
-        rd_mesh_free(&shape.mesh);
-        return;
-    }
-    shape.mesh.material = material;
-    snprintf(shape.mesh.name, RD_NAME_MAX, "%s", name);
-    rd_mesh_transform(&shape.mesh, where);
-    b->ok = rd_scene_add_mesh(b->scene, &shape.mesh);
-}
-
-static void add_light(builder* b, const rd_light* l)
-{
-    b->ok = b->ok && rd_scene_add_light(b->scene, l);
-}
-
-static hdrp_v2 tiles(float u, float v)
-{
-    return hdrp_v2_make(u, v);
-}
-
-/* >>materials */
-
-static rd_material metal(hdrp_v3 f0, float perceptual_roughness)
-{
-    rd_material m = rd_material_default();
-    m.base_color = f0;
-    m.perceptual_roughness = perceptual_roughness;
-    return m;
-}
-
-static rd_material dielectric(hdrp_v3 color, float perceptual_roughness)
-{
-    rd_material m = metal(color, perceptual_roughness);
-    m.metallic = 0.0f;
-    return m;
-}
-
-static rd_material glass(float ior, float thickness_m)
-{
-    rd_material m = dielectric(hdrp_v3_splat(1.0f), 0.0f);
-    m.ior = ior;
-    m.transmission = 1.0f;
-    m.thickness = thickness_m;
-    return m;
-}
 
 static void set_slot(rd_material* m, rd_slot slot, rd_builtin_texture texture)
 {
@@ -111,31 +11,31 @@ static void set_slot(rd_material* m, rd_slot slot, rd_builtin_texture texture)
 
 /* >>the stage */
 
-static void add_stage(builder* b)
+static void add_stage(rd_builder* b)
 {
-    rd_material floor = dielectric(hdrp_v3_make(0.22f, 0.43f, 0.56f), 1.0f);
-    rd_material plinth = dielectric(hdrp_v3_make(0.60f, 0.585f, 0.56f), 0.5f);
+    rd_material floor = rd_dielectric(hdrp_v3_make(0.22f, 0.43f, 0.56f), 1.0f);
+    rd_material plinth = rd_dielectric(hdrp_v3_make(0.60f, 0.585f, 0.56f), 0.5f);
     int stone;
     set_slot(&floor, RD_SLOT_BASE_COLOR, RD_TEX_FLOOR_COLOR);
     set_slot(&floor, RD_SLOT_METALLIC_ROUGHNESS, RD_TEX_FLOOR_ROUGHNESS);
-    place(b, rd_shape_cove(9.0f, 9.0f, -4.2f, 2.2f, 4.5f, 0.35f), add_material(b, &floor, "floor"),
-          rd_affine_identity(), "floor");
-    stone = add_material(b, &plinth, "plinth");
-    place(b, rd_shape_rounded_box(hdrp_v3_make(1.15f, 0.50f, 1.15f), 0.02f), stone,
-          translation(0.0f, 0.25f, -0.70f), "centre plinth");
-    place(b, rd_shape_rounded_box(hdrp_v3_make(0.85f, 0.72f, 0.85f), 0.02f), stone,
-          translation(-1.45f, 0.36f, -0.95f), "left plinth");
-    place(b, rd_shape_rounded_box(hdrp_v3_make(0.85f, 0.72f, 0.85f), 0.02f), stone,
-          translation(1.45f, 0.36f, -0.95f), "right plinth");
-    place(b, rd_shape_rounded_box(hdrp_v3_make(0.90f, 0.34f, 0.90f), 0.02f), stone,
-          translation(-2.50f, 0.17f, -0.45f), "far left plinth");
-    place(b, rd_shape_rounded_box(hdrp_v3_make(0.90f, 0.34f, 0.90f), 0.02f), stone,
-          translation(2.50f, 0.17f, -0.45f), "far right plinth");
+    rd_build_mesh(b, rd_shape_cove(9.0f, 9.0f, -4.2f, 2.2f, 4.5f, 0.35f),
+                  rd_build_material(b, &floor, "floor"), rd_affine_identity(), "floor");
+    stone = rd_build_material(b, &plinth, "plinth");
+    rd_build_mesh(b, rd_shape_rounded_box(hdrp_v3_make(1.15f, 0.50f, 1.15f), 0.02f), stone,
+                  rd_translation(0.0f, 0.25f, -0.70f), "centre plinth");
+    rd_build_mesh(b, rd_shape_rounded_box(hdrp_v3_make(0.85f, 0.72f, 0.85f), 0.02f), stone,
+                  rd_translation(-1.45f, 0.36f, -0.95f), "left plinth");
+    rd_build_mesh(b, rd_shape_rounded_box(hdrp_v3_make(0.85f, 0.72f, 0.85f), 0.02f), stone,
+                  rd_translation(1.45f, 0.36f, -0.95f), "right plinth");
+    rd_build_mesh(b, rd_shape_rounded_box(hdrp_v3_make(0.90f, 0.34f, 0.90f), 0.02f), stone,
+                  rd_translation(-2.50f, 0.17f, -0.45f), "far left plinth");
+    rd_build_mesh(b, rd_shape_rounded_box(hdrp_v3_make(0.90f, 0.34f, 0.90f), 0.02f), stone,
+                  rd_translation(2.50f, 0.17f, -0.45f), "far right plinth");
 }
 
 /* >>rows of spheres in front: metals and dielectrics from smooth to rough */
 
-static void add_rows(builder* b)
+static void add_rows(rd_builder* b)
 {
     static const hdrp_v3 metals[5] = {{0.955f, 0.638f, 0.538f},  /* copper */
                                       {1.000f, 0.782f, 0.344f},  /* gold */
@@ -149,58 +49,62 @@ static void add_rows(builder* b)
                                       {0.80f, 0.76f, 0.68f}};
     for (int i = 0; i < 5; ++i) {
         float roughness = 0.05f + 0.19f * (float)i;
-        rd_material m = metal(metals[i], roughness);
-        rd_material d = dielectric(colors[i], roughness);
-        place(b, rd_shape_sphere(0.175f, 64, tiles(1.0f, 1.0f)), add_material(b, &m, "metal"),
-              translation(-2.22f + 0.41f * (float)i, 0.175f, 0.95f), "metal sphere");
-        place(b, rd_shape_sphere(0.175f, 64, tiles(1.0f, 1.0f)), add_material(b, &d, "dielectric"),
-              translation(2.22f - 0.41f * (float)i, 0.175f, 0.95f), "dielectric sphere");
+        rd_material m = rd_metal(metals[i], roughness);
+        rd_material d = rd_dielectric(colors[i], roughness);
+        rd_build_mesh(b, rd_shape_sphere(0.175f, 64, rd_uv_scale(1.0f, 1.0f)),
+                      rd_build_material(b, &m, "metal"),
+                      rd_translation(-2.22f + 0.41f * (float)i, 0.175f, 0.95f), "metal sphere");
+        rd_build_mesh(b, rd_shape_sphere(0.175f, 64, rd_uv_scale(1.0f, 1.0f)),
+                      rd_build_material(b, &d, "dielectric"),
+                      rd_translation(2.22f - 0.41f * (float)i, 0.175f, 0.95f), "dielectric sphere");
     }
 }
 
 /* >>one group for each feature */
 
 /* Metallic paint: flakes below a smooth coat, the coat itself without them. */
-static void add_clear_coat(builder* b)
+static void add_clear_coat(rd_builder* b)
 {
-    rd_material m = dielectric(hdrp_v3_make(0.45f, 0.012f, 0.02f), 0.42f);
+    rd_material m = rd_dielectric(hdrp_v3_make(0.45f, 0.012f, 0.02f), 0.42f);
     m.metallic = 0.65f;
     m.coat = 1.0f;
     m.coat_perceptual_roughness = 0.03f;
     set_slot(&m, RD_SLOT_NORMAL, RD_TEX_FLAKES);
-    place(b, rd_shape_sphere(0.46f, 128, tiles(6.0f, -3.0f)), add_material(b, &m, "car paint"),
-          translation(0.0f, 0.96f, -0.70f), "coated sphere");
+    rd_build_mesh(b, rd_shape_sphere(0.46f, 128, rd_uv_scale(6.0f, -3.0f)),
+                  rd_build_material(b, &m, "car paint"), rd_translation(0.0f, 0.96f, -0.70f),
+                  "coated sphere");
 }
 
 /* Turned and brushed metal: the tangents run around the axis. */
-static void add_anisotropy(builder* b)
+static void add_anisotropy(rd_builder* b)
 {
     static const hdrp_v2 disc[] = {{0.03f, 0.012f},  {0.42f, 0.012f},  {0.43f, 0.006f},
                                    {0.43f, -0.006f}, {0.42f, -0.012f}, {0.0f, -0.012f}};
     static const hdrp_v2 barrel[] = {{0.0f, 0.30f},     {0.20f, 0.30f},  {0.215f, 0.288f},
                                      {0.235f, 0.15f},   {0.242f, 0.0f},  {0.235f, -0.15f},
                                      {0.215f, -0.288f}, {0.20f, -0.30f}, {0.0f, -0.30f}};
-    rd_material m = metal(hdrp_v3_make(0.91f, 0.92f, 0.92f), 0.38f);
-    rd_material brass = metal(hdrp_v3_make(0.91f, 0.72f, 0.40f), 0.42f);
-    rd_affine tilted = rd_affine_mul(translation(-1.45f, 1.135f, -0.98f),
-                                     rd_affine_mul(rotation_y(0.30f), rotation_x(1.30f)));
+    rd_material m = rd_metal(hdrp_v3_make(0.91f, 0.92f, 0.92f), 0.38f);
+    rd_material brass = rd_metal(hdrp_v3_make(0.91f, 0.72f, 0.40f), 0.42f);
+    rd_affine tilted = rd_affine_mul(rd_translation(-1.45f, 1.135f, -0.98f),
+                                     rd_affine_mul(rd_rotation_y(0.30f), rd_rotation_x(1.30f)));
     m.anisotropy = brass.anisotropy = 0.85f;
     set_slot(&m, RD_SLOT_METALLIC_ROUGHNESS, RD_TEX_BRUSHED);
     set_slot(&brass, RD_SLOT_METALLIC_ROUGHNESS, RD_TEX_BRUSHED);
-    place(b, rd_shape_lathe(disc, 6, 128, tiles(1.0f, 1.0f)), add_material(b, &m, "brushed steel"),
-          tilted, "brushed disc");
-    place(b, rd_shape_lathe(barrel, 9, 96, tiles(1.0f, 1.0f)),
-          add_material(b, &brass, "brushed brass"), translation(-1.92f, 0.30f, 0.28f), "barrel");
+    rd_build_mesh(b, rd_shape_lathe(disc, 6, 128, rd_uv_scale(1.0f, 1.0f)),
+                  rd_build_material(b, &m, "brushed steel"), tilted, "brushed disc");
+    rd_build_mesh(b, rd_shape_lathe(barrel, 9, 96, rd_uv_scale(1.0f, 1.0f)),
+                  rd_build_material(b, &brass, "brushed brass"),
+                  rd_translation(-1.92f, 0.30f, 0.28f), "barrel");
 }
 
 /* Soap bubbles, and a torus of heat-coloured steel. */
-static void add_iridescence(builder* b)
+static void add_iridescence(rd_builder* b)
 {
     static const float bubbles[3][4] = {{0.62f, 1.62f, -0.35f, 0.20f},
                                         {0.98f, 1.98f, -0.55f, 0.12f},
                                         {0.28f, 2.02f, -0.60f, 0.085f}};
-    rd_material bubble = glass(1.0f, 0.0f);
-    rd_material steel = metal(hdrp_v3_make(0.56f, 0.55f, 0.54f), 0.12f);
+    rd_material bubble = rd_glass(1.0f, 0.0f);
+    rd_material steel = rd_metal(hdrp_v3_make(0.56f, 0.55f, 0.54f), 0.12f);
     int soap;
     bubble.film = 1.0f;
     bubble.film_ior = 1.33f;
@@ -208,132 +112,140 @@ static void add_iridescence(builder* b)
     bubble.film_thickness_max_nm = 620.0f;
     bubble.double_sided = true;
     set_slot(&bubble, RD_SLOT_FILM_THICKNESS, RD_TEX_FILM);
-    soap = add_material(b, &bubble, "soap film");
+    soap = rd_build_material(b, &bubble, "soap film");
     for (int i = 0; i < 3; ++i) {
         const float* p = bubbles[i];
-        place(b, rd_shape_sphere(p[3], 96, tiles(1.0f, -1.0f)), soap, translation(p[0], p[1], p[2]),
-              "bubble");
+        rd_build_mesh(b, rd_shape_sphere(p[3], 96, rd_uv_scale(1.0f, -1.0f)), soap,
+                      rd_translation(p[0], p[1], p[2]), "bubble");
     }
     steel.film = 1.0f;
     steel.film_ior = 2.4f;
     steel.film_thickness_min_nm = 40.0f;
     steel.film_thickness_max_nm = 260.0f;
     set_slot(&steel, RD_SLOT_FILM_THICKNESS, RD_TEX_FILM);
-    place(b, rd_shape_torus(0.26f, 0.095f, 96), add_material(b, &steel, "tempered steel"),
-          rd_affine_mul(translation(2.50f, 0.675f, -0.40f),
-                        rd_affine_mul(rotation_y(-0.5f), rotation_x(1.25f))),
-          "iridescent torus");
+    rd_build_mesh(b, rd_shape_torus(0.26f, 0.095f, 96),
+                  rd_build_material(b, &steel, "tempered steel"),
+                  rd_affine_mul(rd_translation(2.50f, 0.675f, -0.40f),
+                                rd_affine_mul(rd_rotation_y(-0.5f), rd_rotation_x(1.25f))),
+                  "iridescent torus");
 }
 
 /* A solid of coloured glass, one of clear glass, and a thin frosted sheet. */
-static void add_transmission(builder* b)
+static void add_transmission(rd_builder* b)
 {
-    rd_material green = glass(1.5f, 0.5f);
-    rd_material clear = glass(1.52f, 0.46f);
-    rd_material thin = glass(1.5f, 0.0f);
+    rd_material green = rd_glass(1.5f, 0.5f);
+    rd_material clear = rd_glass(1.52f, 0.46f);
+    rd_material thin = rd_glass(1.5f, 0.0f);
     green.attenuation_color = hdrp_v3_make(0.25f, 0.85f, 0.65f);
     green.attenuation_distance_m = 0.35f;
     thin.base_color = hdrp_v3_make(0.95f, 0.80f, 0.55f);
     thin.perceptual_roughness = 0.25f;
     thin.double_sided = true;
-    place(b, rd_shape_rounded_box(hdrp_v3_make(0.46f, 0.46f, 0.46f), 0.06f),
-          add_material(b, &green, "green glass"),
-          rd_affine_mul(translation(1.45f, 0.951f, -0.95f), rotation_y(0.65f)), "glass cube");
-    place(b, rd_shape_sphere(0.23f, 96, tiles(1.0f, 1.0f)), add_material(b, &clear, "clear glass"),
-          translation(0.20f, 0.23f, 1.60f), "glass sphere");
-    place(b, rd_shape_card(0.50f, 0.62f, 0.0f, tiles(1.0f, -1.0f)),
-          add_material(b, &thin, "amber sheet"),
-          rd_affine_mul(translation(1.18f, 0.0f, 0.32f), rotation_y(-0.55f)), "amber sheet");
+    rd_build_mesh(b, rd_shape_rounded_box(hdrp_v3_make(0.46f, 0.46f, 0.46f), 0.06f),
+                  rd_build_material(b, &green, "green glass"),
+                  rd_affine_mul(rd_translation(1.45f, 0.951f, -0.95f), rd_rotation_y(0.65f)),
+                  "glass cube");
+    rd_build_mesh(b, rd_shape_sphere(0.23f, 96, rd_uv_scale(1.0f, 1.0f)),
+                  rd_build_material(b, &clear, "clear glass"), rd_translation(0.20f, 0.23f, 1.60f),
+                  "glass sphere");
+    rd_build_mesh(b, rd_shape_card(0.50f, 0.62f, 0.0f, rd_uv_scale(1.0f, -1.0f)),
+                  rd_build_material(b, &thin, "amber sheet"),
+                  rd_affine_mul(rd_translation(1.18f, 0.0f, 0.32f), rd_rotation_y(-0.55f)),
+                  "amber sheet");
 }
 
 /* MASK: a perforated screen and a plant. BLEND: a tinted pane with a label on it. */
-static void add_screen(builder* b)
+static void add_screen(rd_builder* b)
 {
-    rd_material screen = metal(hdrp_v3_make(0.91f, 0.78f, 0.55f), 0.4f);
+    rd_material screen = rd_metal(hdrp_v3_make(0.91f, 0.78f, 0.55f), 0.4f);
     set_slot(&screen, RD_SLOT_BASE_COLOR, RD_TEX_SCREEN);
     screen.alpha_mode = RD_ALPHA_MASK;
     screen.double_sided = true;
-    place(b, rd_shape_card(1.35f, 1.75f, 0.0f, tiles(13.5f, -10.1f)),
-          add_material(b, &screen, "perforated steel"),
-          rd_affine_mul(translation(-2.75f, 0.0f, -1.75f), rotation_y(0.30f)), "screen");
+    rd_build_mesh(b, rd_shape_card(1.35f, 1.75f, 0.0f, rd_uv_scale(13.5f, -10.1f)),
+                  rd_build_material(b, &screen, "perforated steel"),
+                  rd_affine_mul(rd_translation(-2.75f, 0.0f, -1.75f), rd_rotation_y(0.30f)),
+                  "screen");
 }
 
-static void add_plant(builder* b)
+static void add_plant(rd_builder* b)
 {
     static const hdrp_v2 pot[] = {{0.0f, 0.22f},  {0.135f, 0.22f}, {0.14f, 0.27f}, {0.175f, 0.28f},
                                   {0.18f, 0.27f}, {0.17f, 0.20f},  {0.12f, 0.0f},  {0.0f, 0.0f}};
-    rd_material leaf = dielectric(hdrp_v3_splat(1.0f), 0.45f);
-    rd_material clay = dielectric(hdrp_v3_make(0.50f, 0.20f, 0.11f), 0.75f);
+    rd_material leaf = rd_dielectric(hdrp_v3_splat(1.0f), 0.45f);
+    rd_material clay = rd_dielectric(hdrp_v3_make(0.50f, 0.20f, 0.11f), 0.75f);
     int leaves;
     set_slot(&leaf, RD_SLOT_BASE_COLOR, RD_TEX_LEAF);
     leaf.alpha_mode = RD_ALPHA_MASK;
     leaf.double_sided = true;
     leaf.slab_thickness = 0.5f;
-    leaves = add_material(b, &leaf, "leaf");
-    place(b, rd_shape_lathe(pot, 8, 48, tiles(1.0f, 1.0f)), add_material(b, &clay, "clay"),
-          translation(-2.50f, 0.34f, -0.45f), "pot");
+    leaves = rd_build_material(b, &leaf, "leaf");
+    rd_build_mesh(b, rd_shape_lathe(pot, 8, 48, rd_uv_scale(1.0f, 1.0f)),
+                  rd_build_material(b, &clay, "clay"), rd_translation(-2.50f, 0.34f, -0.45f),
+                  "pot");
     for (int i = 0; i < 14; ++i) {
         float turn = 2.399963f * (float)i; /* the golden angle */
         float lean = 0.25f + 0.055f * (float)i;
         float size = 0.62f - 0.014f * (float)i;
-        rd_affine where = rd_affine_mul(translation(-2.50f, 0.55f, -0.45f),
-                                        rd_affine_mul(rotation_y(turn), rotation_x(-lean)));
-        place(b, rd_shape_card(size * 0.42f, size, 0.30f * size, tiles(1.0f, -1.0f)), leaves, where,
-              "leaf");
+        rd_affine where = rd_affine_mul(rd_translation(-2.50f, 0.55f, -0.45f),
+                                        rd_affine_mul(rd_rotation_y(turn), rd_rotation_x(-lean)));
+        rd_build_mesh(b, rd_shape_card(size * 0.42f, size, 0.30f * size, rd_uv_scale(1.0f, -1.0f)),
+                      leaves, where, "leaf");
     }
 }
 
-static void add_pane(builder* b)
+static void add_pane(rd_builder* b)
 {
-    rd_material pane = dielectric(hdrp_v3_make(0.30f, 0.55f, 0.75f), 0.05f);
-    rd_material label = dielectric(hdrp_v3_splat(1.0f), 0.6f);
-    rd_affine where = rd_affine_mul(translation(-1.00f, 0.0f, 0.36f), rotation_y(0.35f));
+    rd_material pane = rd_dielectric(hdrp_v3_make(0.30f, 0.55f, 0.75f), 0.05f);
+    rd_material label = rd_dielectric(hdrp_v3_splat(1.0f), 0.6f);
+    rd_affine where = rd_affine_mul(rd_translation(-1.00f, 0.0f, 0.36f), rd_rotation_y(0.35f));
     pane.alpha_mode = label.alpha_mode = RD_ALPHA_BLEND;
     pane.double_sided = label.double_sided = true;
     pane.alpha = 0.35f;
     set_slot(&label, RD_SLOT_BASE_COLOR, RD_TEX_LABEL);
-    place(b, rd_shape_card(0.66f, 0.52f, 0.0f, tiles(1.0f, -1.0f)),
-          add_material(b, &pane, "tinted pane"), where, "pane");
+    rd_build_mesh(b, rd_shape_card(0.66f, 0.52f, 0.0f, rd_uv_scale(1.0f, -1.0f)),
+                  rd_build_material(b, &pane, "tinted pane"), where, "pane");
     where.t = hdrp_v3_mad(where.t, where.z, 0.002f);
     where.t.y += 0.14f;
-    place(b, rd_shape_card(0.24f, 0.24f, 0.0f, tiles(1.0f, -1.0f)),
-          add_material(b, &label, "label"), where, "label");
+    rd_build_mesh(b, rd_shape_card(0.24f, 0.24f, 0.0f, rd_uv_scale(1.0f, -1.0f)),
+                  rd_build_material(b, &label, "label"), where, "label");
 }
 
 /* Folded cloth with a weave, seen from both sides. */
-static void add_cloth(builder* b)
+static void add_cloth(rd_builder* b)
 {
     static const hdrp_v2 rod[] = {{0.0f, 1.0f}, {0.022f, 1.0f}, {0.022f, -1.0f}, {0.0f, -1.0f}};
-    rd_material m = dielectric(hdrp_v3_splat(1.0f), 0.85f);
-    rd_material wood = dielectric(hdrp_v3_make(0.20f, 0.11f, 0.06f), 0.4f);
+    rd_material m = rd_dielectric(hdrp_v3_splat(1.0f), 0.85f);
+    rd_material wood = rd_dielectric(hdrp_v3_make(0.20f, 0.11f, 0.06f), 0.4f);
     set_slot(&m, RD_SLOT_BASE_COLOR, RD_TEX_WEAVE_COLOR);
     set_slot(&m, RD_SLOT_NORMAL, RD_TEX_WEAVE_NORMAL);
     m.slot[RD_SLOT_NORMAL].u_row = hdrp_v3_make(8.0f, 0.0f, 0.0f);
     m.slot[RD_SLOT_NORMAL].v_row = hdrp_v3_make(0.0f, 8.0f, 0.0f);
     m.double_sided = true;
-    place(b, rd_shape_cloth(1.75f, 1.95f, 0.10f, tiles(1.0f, -1.0f)), add_material(b, &m, "cloth"),
-          translation(2.35f, 0.06f, -2.05f), "cloth");
-    place(b, rd_shape_lathe(rod, 4, 24, tiles(1.0f, 1.0f)), add_material(b, &wood, "wood"),
-          rd_affine_mul(translation(2.35f, 2.02f, -2.05f), rotation_z(HDRP_HALF_PI)), "rod");
+    rd_build_mesh(b, rd_shape_cloth(1.75f, 1.95f, 0.10f, rd_uv_scale(1.0f, -1.0f)),
+                  rd_build_material(b, &m, "cloth"), rd_translation(2.35f, 0.06f, -2.05f), "cloth");
+    rd_build_mesh(
+        b, rd_shape_lathe(rod, 4, 24, rd_uv_scale(1.0f, 1.0f)), rd_build_material(b, &wood, "wood"),
+        rd_affine_mul(rd_translation(2.35f, 2.02f, -2.05f), rd_rotation_z(HDRP_HALF_PI)), "rod");
 }
 
 /* Dents that shrink below a pixel: their normals have to widen the highlight. */
-static void add_hammered(builder* b)
+static void add_hammered(rd_builder* b)
 {
     static const hdrp_v2 vase[] = {{0.0f, 0.60f},   {0.085f, 0.62f}, {0.095f, 0.60f},
                                    {0.075f, 0.54f}, {0.070f, 0.48f}, {0.10f, 0.40f},
                                    {0.16f, 0.31f},  {0.20f, 0.21f},  {0.205f, 0.14f},
                                    {0.18f, 0.06f},  {0.13f, 0.0f},   {0.0f, 0.0f}};
-    rd_material m = metal(hdrp_v3_make(0.96f, 0.64f, 0.54f), 0.16f);
+    rd_material m = rd_metal(hdrp_v3_make(0.96f, 0.64f, 0.54f), 0.16f);
     set_slot(&m, RD_SLOT_NORMAL, RD_TEX_HAMMERED);
-    place(b, rd_shape_lathe(vase, 12, 96, tiles(4.0f, 3.0f)),
-          add_material(b, &m, "hammered copper"), translation(0.0f, 0.0f, 0.32f), "vase");
+    rd_build_mesh(b, rd_shape_lathe(vase, 12, 96, rd_uv_scale(4.0f, 3.0f)),
+                  rd_build_material(b, &m, "hammered copper"), rd_translation(0.0f, 0.0f, 0.32f),
+                  "vase");
 }
 
 /* No uv at all: two triplanar layers, blended as surface gradients. */
-static void add_rock(builder* b)
+static void add_rock(rd_builder* b)
 {
-    rd_material m = dielectric(hdrp_v3_splat(1.0f), 0.8f);
+    rd_material m = rd_dielectric(hdrp_v3_splat(1.0f), 0.8f);
     set_slot(&m, RD_SLOT_BASE_COLOR, RD_TEX_ROCK_COLOR);
     m.detail.layer_count = 2;
     m.detail.texture[0] = RD_TEX_ROCK_COARSE;
@@ -341,40 +253,26 @@ static void add_rock(builder* b)
     m.detail.scale[0] = 1.6f;
     m.detail.scale[1] = 4.0f;
     m.detail.strength[0] = m.detail.strength[1] = 1.0f;
-    place(b, rd_shape_rock(0.27f, 128, 5u), add_material(b, &m, "rock"),
-          translation(-0.86f, 0.20f, -0.25f), "rock");
+    rd_build_mesh(b, rd_shape_rock(0.27f, 128, 5u), rd_build_material(b, &m, "rock"),
+                  rd_translation(-0.86f, 0.20f, -0.25f), "rock");
 }
 
 /* >>light. The sun is part of the sky; these are the lamps of the display. */
 
-static rd_light light_at(rd_light_type type, hdrp_v3 position, hdrp_v3 target, hdrp_v3 color)
-{
-    rd_light l;
-    memset(&l, 0, sizeof l);
-    l.type = type;
-    l.position = position;
-    l.forward = hdrp_normalize_or(hdrp_v3_sub(target, position), hdrp_v3_make(0.0f, -1.0f, 0.0f));
-    l.right = hdrp_normalize_or(hdrp_v3_cross(l.forward, hdrp_v3_make(0.0f, 1.0f, 0.0f)),
-                                hdrp_v3_make(1.0f, 0.0f, 0.0f));
-    l.up = hdrp_v3_cross(l.right, l.forward);
-    l.color = color;
-    return l;
-}
-
-static void add_lamps(builder* b)
+static void add_lamps(rd_builder* b)
 {
     hdrp_v3 warm = hdrp_v3_make(1.0f, 0.72f, 0.42f);
     hdrp_v3 cool = hdrp_v3_make(0.62f, 0.78f, 1.0f);
-    rd_light spot = light_at(RD_LIGHT_SPOT, hdrp_v3_make(-0.4f, 3.9f, 1.6f),
-                             hdrp_v3_make(0.0f, 0.9f, -0.7f), hdrp_v3_make(1.0f, 0.93f, 0.84f));
-    rd_light washer = light_at(RD_LIGHT_SPOT, hdrp_v3_make(0.0f, 0.12f, -2.3f),
-                               hdrp_v3_make(0.0f, 2.1f, -4.2f), warm);
-    rd_light pyramid = light_at(RD_LIGHT_PYRAMID, hdrp_v3_make(-0.9f, 3.6f, -1.6f),
-                                hdrp_v3_make(-2.75f, 1.0f, -3.6f), cool);
-    rd_light box = light_at(RD_LIGHT_BOX, hdrp_v3_make(2.3f, 3.6f, -3.0f),
-                            hdrp_v3_make(2.3f, 0.0f, -3.05f), cool);
-    rd_light bulb = light_at(RD_LIGHT_POINT, hdrp_v3_make(0.36f, 0.06f, 0.45f),
-                             hdrp_v3_make(0.0f, 0.0f, 0.0f), warm);
+    rd_light spot = rd_light_at(RD_LIGHT_SPOT, hdrp_v3_make(-0.4f, 3.9f, 1.6f),
+                                hdrp_v3_make(0.0f, 0.9f, -0.7f), hdrp_v3_make(1.0f, 0.93f, 0.84f));
+    rd_light washer = rd_light_at(RD_LIGHT_SPOT, hdrp_v3_make(0.0f, 0.12f, -2.3f),
+                                  hdrp_v3_make(0.0f, 2.1f, -4.2f), warm);
+    rd_light pyramid = rd_light_at(RD_LIGHT_PYRAMID, hdrp_v3_make(-0.9f, 3.6f, -1.6f),
+                                   hdrp_v3_make(-2.75f, 1.0f, -3.6f), cool);
+    rd_light box = rd_light_at(RD_LIGHT_BOX, hdrp_v3_make(2.3f, 3.6f, -3.0f),
+                               hdrp_v3_make(2.3f, 0.0f, -3.05f), cool);
+    rd_light bulb = rd_light_at(RD_LIGHT_POINT, hdrp_v3_make(0.36f, 0.06f, 0.45f),
+                                hdrp_v3_make(0.0f, 0.0f, 0.0f), warm);
     spot.intensity = 200000.0f;
     spot.inner_angle_rad = 0.20f;
     spot.outer_angle_rad = 0.30f;
@@ -393,43 +291,28 @@ static void add_lamps(builder* b)
     bulb.intensity = 2500.0f;
     bulb.range_m = 4.0f;
     bulb.radius_m = 0.06f;
-    add_light(b, &spot);
-    add_light(b, &washer);
-    add_light(b, &pyramid);
-    add_light(b, &box);
-    add_light(b, &bulb);
+    rd_build_light(b, &spot);
+    rd_build_light(b, &washer);
+    rd_build_light(b, &pyramid);
+    rd_build_light(b, &box);
+    rd_build_light(b, &bulb);
 }
 
 /* The bulb itself, so that the light has a visible cause. */
-static void add_bulb(builder* b)
+static void add_bulb(rd_builder* b)
 {
-    rd_material m = dielectric(hdrp_v3_splat(0.8f), 0.3f);
+    rd_material m = rd_dielectric(hdrp_v3_splat(0.8f), 0.3f);
     /* What a sphere of this size needs to look as bright as its intensity: I / (pi r^2). */
     m.emission_nits =
         hdrp_v3_scale(hdrp_v3_make(1.0f, 0.72f, 0.42f), 2500.0f / (HDRP_PI * 0.06f * 0.06f));
     m.is_lamp = true;
-    place(b, rd_shape_sphere(0.06f, 48, tiles(1.0f, 1.0f)), add_material(b, &m, "bulb"),
-          translation(0.36f, 0.06f, 0.45f), "bulb");
-}
-
-static void add_camera(builder* b)
-{
-    hdrp_v3 eye = hdrp_v3_make(0.25f, 1.75f, 6.6f);
-    hdrp_v3 forward = hdrp_v3_normalize(hdrp_v3_sub(hdrp_v3_make(0.0f, 0.80f, -0.6f), eye));
-    rd_scene_camera c;
-    memset(&c, 0, sizeof c);
-    snprintf(c.name, RD_NAME_MAX, "display");
-    c.world_from_view.z = hdrp_v3_neg(forward);
-    c.world_from_view.x = hdrp_v3_normalize(hdrp_v3_cross(forward, hdrp_v3_make(0.0f, 1.0f, 0.0f)));
-    c.world_from_view.y = hdrp_v3_cross(c.world_from_view.x, forward);
-    c.world_from_view.t = eye;
-    c.fov_y_rad = 0.48f;
-    b->ok = b->ok && rd_scene_add_camera(b->scene, &c);
+    rd_build_mesh(b, rd_shape_sphere(0.06f, 48, rd_uv_scale(1.0f, 1.0f)),
+                  rd_build_material(b, &m, "bulb"), rd_translation(0.36f, 0.06f, 0.45f), "bulb");
 }
 
 bool rd_scene_build_builtin(rd_scene* scene, rd_report* report)
 {
-    builder b = {scene, true};
+    rd_builder b = {scene, true};
     memset(scene, 0, sizeof *scene);
     scene->has_sky = true;
     scene->sun_elevation_rad = 0.52f;
@@ -451,7 +334,8 @@ bool rd_scene_build_builtin(rd_scene* scene, rd_report* report)
     add_rock(&b);
     add_lamps(&b);
     add_bulb(&b);
-    add_camera(&b);
+    rd_build_camera(&b, hdrp_v3_make(0.25f, 1.75f, 6.6f), hdrp_v3_make(0.0f, 0.80f, -0.6f), 0.48f,
+                    "display");
     if (!b.ok) {
         return rd_fail(report, "built-in scene", "out of memory");
     }

@@ -173,6 +173,15 @@ static bool set_path(const argument* a)
     return ok;
 }
 
+static bool set_builtin(const argument* a)
+{
+    int i;
+    bool ok = read_word(a, "display|lights", &i);
+    a->options->has_builtin = true;
+    a->options->builtin = (rd_builtin)i;
+    return ok;
+}
+
 static bool set_spp(const argument* a)
 {
     return read_int(a, 1, MAX_SAMPLES, &a->options->spp);
@@ -276,6 +285,7 @@ static const struct {
     const char* value;
     const char* help;
 } table[] = {
+    {"--scene", set_builtin, "NAME", "without a file: display (default), or lights, a street"},
     {"--env", set_env, "FILE", "sky: lat-long or cube, .exr or .hdr (default: a procedural sky)"},
     {"--env-lux", set_env_lux, "LUX", "scale the sky to this illuminance on level ground"},
     {"--out", set_out, "FILE", ".png (tone-mapped) or .exr (linear); default hdrp_render.png"},
@@ -342,6 +352,9 @@ static bool take_option(rd_options* o, int argc, char** argv, int* i, rd_report*
 
 static bool check_together(const rd_options* o, rd_report* report)
 {
+    if (o->has_builtin && o->scene) {
+        return rd_fail(report, "--scene", "cannot be combined with a file");
+    }
     if (o->has_camera && o->has_eye) {
         return rd_fail(report, "--eye", "cannot be combined with --camera");
     }

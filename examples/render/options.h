@@ -7,6 +7,8 @@
 #include "view.h"
 
 typedef enum rd_quality { RD_QUALITY_FAST, RD_QUALITY_BALANCED, RD_QUALITY_REFERENCE } rd_quality;
+/* The built-in scenes. */
+typedef enum rd_builtin { RD_BUILTIN_DISPLAY, RD_BUILTIN_LIGHTS } rd_builtin;
 typedef enum rd_path { RD_PATH_DEFERRED, RD_PATH_FORWARD } rd_path;
 
 /* What --features turns on and off. */
@@ -32,8 +34,9 @@ typedef enum rd_path { RD_PATH_DEFERRED, RD_PATH_FORWARD } rd_path;
 #define RD_FEATURE_GREY_CARDS (1u << 17)
 
 typedef struct rd_options {
-    const char* scene; /* NULL: the built-in one */
-    const char* env;   /* NULL: the procedural sky */
+    const char* scene; /* NULL: a built-in one */
+    rd_builtin builtin;
+    const char* env; /* NULL: the procedural sky */
     const char* out;
     const char* compare;
     const char* stats;
@@ -47,7 +50,7 @@ typedef struct rd_options {
     rd_path path;
     rd_view view;
     uint32_t features;
-    bool has_exposure, has_eye, has_target, has_fov, has_camera;
+    bool has_exposure, has_eye, has_target, has_fov, has_camera, has_builtin;
     float exposure_ev100;
     int camera;
     hdrp_v3 eye, target;

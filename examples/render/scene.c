@@ -221,6 +221,26 @@ bool rd_scene_add_camera(rd_scene* scene, const rd_scene_camera* c)
     return grown != NULL;
 }
 
+int rd_scene_add_blocker(rd_scene* scene, const hdrp_cull_blocker* b)
+{
+    void* grown = append(scene->blockers, &scene->blocker_count, sizeof *b, b);
+    if (!grown) {
+        return -1;
+    }
+    scene->blockers = (hdrp_cull_blocker*)grown;
+    return scene->blocker_count - 1;
+}
+
+bool rd_scene_link_blocker(rd_scene* scene, uint32_t blocker)
+{
+    void* grown =
+        append(scene->blocker_links, &scene->blocker_link_count, sizeof blocker, &blocker);
+    if (grown) {
+        scene->blocker_links = (uint32_t*)grown;
+    }
+    return grown != NULL;
+}
+
 void rd_scene_update_bounds(rd_scene* scene)
 {
     rd_bounds b;
@@ -248,6 +268,8 @@ void rd_scene_free(rd_scene* scene)
     free(scene->materials);
     free(scene->lights);
     free(scene->cameras);
+    free(scene->blockers);
+    free(scene->blocker_links);
     rd_textures_free(&scene->textures);
     memset(scene, 0, sizeof *scene);
 }

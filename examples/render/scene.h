@@ -3,6 +3,7 @@
 #define RD_SCENE_H
 
 #include "hdrp_brdf.h"
+#include "hdrp_cull_blocker.h"
 #include "texture.h"
 #include "transform.h"
 
@@ -91,10 +92,10 @@ typedef struct rd_mesh {
     uint32_t vertex_count, triangle_count;
     float scale; /* metres for one unit of the file: the thickness of volumes grows with it */
     uint32_t light_layers; /* of its surfaces, 8 bits; 0: all */
-    hdrp_v3* positions; /* one element of padding follows: Embree reads 16 bytes at a time */
-    hdrp_v3* normals;   /* unit; NULL: flat */
-    hdrp_v4* tangents;  /* unit, w is the sign of the bitangent */
-    hdrp_v4* colors;    /* linear */
+    hdrp_v3* positions;    /* one element of padding follows: Embree reads 16 bytes at a time */
+    hdrp_v3* normals;      /* unit; NULL: flat */
+    hdrp_v4* tangents;     /* unit, w is the sign of the bitangent */
+    hdrp_v4* colors;       /* linear */
     hdrp_v2* uv[RD_MAX_UV_SETS];
     uint32_t* indices;
 } rd_mesh;
@@ -119,7 +120,8 @@ typedef struct rd_light {
     float radius_m;                         /* size of the source for soft shadows; 0: a point */
     float angular_radius_rad;               /* the same of a directional light */
     uint32_t light_layers;                  /* that it lights; 0: all */
-    bool shadowless;
+    bool shadowless;                        /* only blockers keep it away */
+    uint32_t first_blocker, blocker_count;  /* of the links of the scene */
 } rd_light;
 
 typedef struct rd_scene_camera {
@@ -142,7 +144,9 @@ typedef struct rd_scene {
     rd_mesh* meshes;
     rd_light* lights;
     rd_scene_camera* cameras;
-    int material_count, mesh_count, light_count, camera_count;
+    hdrp_cull_blocker* blockers; /* and their portals */
+    uint32_t* blocker_links;     /* indices of blockers, those of a light in one piece */
+    int material_count, mesh_count, light_count, camera_count, blocker_count, blocker_link_count;
     rd_texture_set textures;
     uint64_t triangle_count, vertex_count;
     hdrp_v3 slab_color[RD_MAX_PROFILES]; /* of white light behind a slab of thickness 1 */
@@ -156,8 +160,9 @@ typedef struct rd_scene {
  * for rd_textures_prepare. *scene is to be freed in any case. */
 bool rd_scene_load_gltf(rd_scene* scene, const char* path, rd_report* report);
 
-/* The scene that is shown when no file is given. */
+/* The scene that is shown when no file is given, and a street of many lights. */
 bool rd_scene_build_builtin(rd_scene* scene, rd_report* report);
+bool rd_scene_build_lights(rd_scene* scene, rd_report* report);
 
 void rd_scene_free(rd_scene* scene);
 
@@ -193,6 +198,8 @@ bool rd_scene_add_mesh(rd_scene* scene, rd_mesh* mesh);
 int rd_scene_add_material(rd_scene* scene, const rd_material* m); /* -1: out of memory */
 bool rd_scene_add_light(rd_scene* scene, const rd_light* l);
 bool rd_scene_add_camera(rd_scene* scene, const rd_scene_camera* c);
+int rd_scene_add_blocker(rd_scene* scene, const hdrp_cull_blocker* b); /* -1: out of memory */
+bool rd_scene_link_blocker(rd_scene* scene, uint32_t blocker);
 void rd_scene_update_bounds(rd_scene* scene);
 
 #ifdef __cplusplus
