@@ -237,7 +237,7 @@ HDRP_FN hdrp_v3 hdrp_cull_view_from_world(hdrp_v3 position, hdrp_cull_camera cam
 
 /* Made by hdrp_cull_shape_sphere, hdrp_cull_shape_box and hdrp_cull_shape_from_light. */
 struct hdrp_cull_shape {
-    hdrp_v4 center_range; /* xyz [-1e18,1e18], w [0,1e18] m: apex of cones and pyramids */
+    hdrp_v4 center_range; /* xyz [-4e18,4e18], w [0,1e18] m: apex of cones and pyramids */
     hdrp_v4 right_half;   /* xyz unit, w [0,1e18] m half size along it */
     hdrp_v4 up_half;      /* xyz unit, w [0,1e18] m */
     hdrp_v4 forward_half; /* xyz unit, w [0,1e18] m */
@@ -855,6 +855,13 @@ HDRP_FN hdrp_cull_tile hdrp_cull_tile_make(hdrp_cull_camera camera, float x0_px,
     return t;
 }
 
+#ifndef HDRP_GPU
+/* C and shaders share these: an array of negative size, an error, where their sizes differ. */
+typedef char hdrp_i_cull_camera_size_of[sizeof(hdrp_cull_camera) == 80 ? 1 : -1];
+typedef char hdrp_i_cull_shape_size_of[sizeof(hdrp_cull_shape) == 96 ? 1 : -1];
+typedef char hdrp_i_cull_tile_size_of[sizeof(hdrp_cull_tile) == 64 ? 1 : -1];
+#endif
+
 /* Depths, in metres. Nothing is between them where nearest > farthest. */
 struct hdrp_cull_interval {
     float nearest;  /* any */
@@ -871,11 +878,11 @@ HDRP_FN hdrp_cull_interval hdrp_i_cull_corner(hdrp_cull_interval r, hdrp_v4 ball
     float x = ball.x - u * ball.z;
     float y = ball.y - v * ball.z;
     float w = ball.x * v - ball.y * u;
-    float half2 = (ball.w * ball.w - (x * x + y * y + w * w) * inverse) * inverse;
+    float chord2 = (ball.w * ball.w - (x * x + y * y + w * w) * inverse) * inverse;
     float middle = (ball.x * u + ball.y * v + ball.z) * inverse;
-    float half_chord = hdrp_sqrt(hdrp_max(half2, 0.0f));
-    r.nearest = half2 >= 0.0f ? hdrp_min(middle - half_chord, r.nearest) : r.nearest;
-    r.farthest = half2 >= 0.0f ? hdrp_max(middle + half_chord, r.farthest) : r.farthest;
+    float half_chord = hdrp_sqrt(hdrp_max(chord2, 0.0f));
+    r.nearest = chord2 >= 0.0f ? hdrp_min(middle - half_chord, r.nearest) : r.nearest;
+    r.farthest = chord2 >= 0.0f ? hdrp_max(middle + half_chord, r.farthest) : r.farthest;
     return r;
 }
 
@@ -886,13 +893,13 @@ HDRP_FN hdrp_cull_interval hdrp_i_cull_side(hdrp_cull_interval r, float x, float
                                             float v1, float margin)
 {
     float d = x - u * z;
-    float half2 = (radius2 - d * d * inverse) * inverse;
+    float chord2 = (radius2 - d * d * inverse) * inverse;
     float middle = (x * u + z) * inverse;
-    float half_depth = hdrp_sqrt(hdrp_max(half2, 0.0f));
+    float half_depth = hdrp_sqrt(hdrp_max(chord2, 0.0f));
     float z0 = middle - half_depth;
     float z1 = middle + half_depth;
-    float lo = half2 >= 0.0f && v0 * z0 - margin <= y && y <= v1 * z0 + margin ? z0 : r.nearest;
-    float hi = half2 >= 0.0f && v0 * z1 - margin <= y && y <= v1 * z1 + margin ? z1 : r.farthest;
+    float lo = chord2 >= 0.0f && v0 * z0 - margin <= y && y <= v1 * z0 + margin ? z0 : r.nearest;
+    float hi = chord2 >= 0.0f && v0 * z1 - margin <= y && y <= v1 * z1 + margin ? z1 : r.farthest;
     r.nearest = hdrp_min(lo, r.nearest);
     r.farthest = hdrp_max(hi, r.farthest);
     return r;
@@ -928,10 +935,10 @@ HDRP_FN hdrp_cull_interval hdrp_i_cull_ball_orthographic(hdrp_cull_tile t, hdrp_
     hdrp_cull_interval r;
     float x = hdrp_max(hdrp_max(t.window.x - b.x, b.x - t.window.y), 0.0f);
     float y = hdrp_max(hdrp_max(t.window.z - b.y, b.y - t.window.w), 0.0f);
-    float half2 = b.w * b.w - (x * x + y * y);
-    float half_depth = hdrp_sqrt(hdrp_max(half2, 0.0f));
-    r.nearest = half2 >= 0.0f ? b.z - half_depth : HDRP_I_CULL_EMPTY;
-    r.farthest = half2 >= 0.0f ? b.z + half_depth : -HDRP_I_CULL_EMPTY;
+    float chord2 = b.w * b.w - (x * x + y * y);
+    float half_depth = hdrp_sqrt(hdrp_max(chord2, 0.0f));
+    r.nearest = chord2 >= 0.0f ? b.z - half_depth : HDRP_I_CULL_EMPTY;
+    r.farthest = chord2 >= 0.0f ? b.z + half_depth : -HDRP_I_CULL_EMPTY;
     return r;
 }
 
@@ -996,7 +1003,7 @@ HDRP_FN hdrp_cull_interval hdrp_cull_interval_plane(hdrp_cull_interval interval,
 /* >>screen bounds */
 
 struct hdrp_cull_bounds {
-    hdrp_v4 rect_px; /* [-1,16385] left, upper, right and lower edge; nothing where left > right */
+    hdrp_v4 rect_px; /* [-2,16386] left, upper, right and lower edge; nothing where left > right */
     float nearest;   /* any depth in m */
     float farthest;  /* any */
 };

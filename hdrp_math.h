@@ -1837,6 +1837,10 @@ struct hdrp_depth_params {
 };
 HDRP_TYPEDEF(hdrp_depth_params)
 
+#ifndef HDRP_GPU
+typedef char hdrp_i_depth_params_size_of[sizeof(hdrp_depth_params) == 32 ? 1 : -1];
+#endif
+
 /* Metres; as the far distance: none. Also the depth of what is behind everything. */
 #define HDRP_DEPTH_INFINITE 1e18f
 

@@ -62,10 +62,17 @@ union unsigned using virtual wchar_t xor xor_eq restrict goto auto
 
 WINDOWS = "near far min max small hyper interface pascal cdecl IN OUT CONST VOID"
 
+# Vectors and matrices: half2, uint4, float3x4 ...
+DIGITS = "1234"
+HLSL_SHAPED = {f"{kind}{size}" for kind in "bool int uint half float double".split()
+               for size in list(DIGITS) + [f"{a}x{b}" for a in DIGITS for b in DIGITS]}
+MSL_SHAPED = {f"{kind}{n}" for kind in "bool char uchar short ushort int uint long ulong half "
+              "float bfloat".split() for n in "234"}
+
 LISTS = {
     "GLSL": set(GLSL.split()),
-    "HLSL": set(HLSL.split()),
-    "MSL": set(MSL.split()) - set(MSL_LEGAL.split()),
+    "HLSL": set(HLSL.split()) | HLSL_SHAPED,
+    "MSL": (set(MSL.split()) | MSL_SHAPED) - set(MSL_LEGAL.split()),
     "OpenCL C": set(OPENCL.split()),
     "C++": set(CPP.split()),
     "windows.h": set(WINDOWS.split()),

@@ -218,7 +218,8 @@ class ApiCheck(trees.TreeTest):
                     "HDRP_BRDF__HIGH: '__' is reserved")
 
     def test_shader_keywords_are_no_identifiers(self):
-        for word, language in [("sample", "GLSL"), ("line", "HLSL"), ("kernel", "MSL"),
+        for word, language in [("sample", "GLSL"), ("line", "HLSL"), ("half2", "HLSL"),
+                               ("kernel", "MSL"),
                                ("near", "windows.h"), ("global", "OpenCL"), ("new", "C++"),
                                ("bool", "GLSL")]:
             self.broken("hdrp_brdf.h", "    return 0.5f * (p.first + p.second);",
