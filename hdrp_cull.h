@@ -358,6 +358,7 @@ typedef struct hdrp_cull_set {
     hdrp_v4* balls;           /* hdrp_cull_shape_ball */
     float* planes;            /* of each shape x, y, z, w of HDRP_CULL_PLANES_STRIDE planes */
     hdrp_cull_bounds* bounds; /* on the screen */
+    uint16_t* kinds;          /* kind | category << 8 of each shape: the lower bits of bits.x */
 } hdrp_cull_set;
 
 /** Bytes that hdrp_cull_set_init needs.
@@ -613,6 +614,7 @@ static size_t hdrp_i_cull_place_set(hdrp_cull_set* set, uint32_t capacity, void*
     set->planes = (float*)hdrp_i_cull_take(&arena, (size_t)capacity * 4u * HDRP_CULL_PLANES_STRIDE,
                                            sizeof *set->planes);
     set->bounds = (hdrp_cull_bounds*)hdrp_i_cull_take(&arena, capacity, sizeof *set->bounds);
+    set->kinds = (uint16_t*)hdrp_i_cull_take(&arena, capacity, sizeof *set->kinds);
     return arena.used;
 }
 
@@ -659,6 +661,16 @@ HDRP_API hdrp_result hdrp_cull_set_begin(hdrp_cull_set* set, const hdrp_cull_cam
     return HDRP_OK;
 }
 
+static uint32_t hdrp_i_cull_category(const hdrp_cull_set* set, uint32_t i)
+{
+    return (uint32_t)set->kinds[i] >> 8;
+}
+
+static int hdrp_i_cull_is_ball(const hdrp_cull_set* set, uint32_t i)
+{
+    return (set->kinds[i] & HDRP_CULL_KIND_MASK) == HDRP_CULL_KIND_BALL;
+}
+
 /* The planes of a shape; what it has less than others excludes nothing. */
 static void hdrp_i_cull_project_planes(hdrp_cull_shape shape, float orthographic, float* planes)
 {
@@ -691,12 +703,13 @@ HDRP_API hdrp_result hdrp_cull_set_project(hdrp_cull_set* set, const hdrp_cull_s
         hdrp_cull_shape s = hdrp_cull_shape_in_view(shapes[i], set->camera);
         set->shapes[i] = s;
         set->balls[i] = hdrp_cull_shape_ball(s);
+        set->kinds[i] = (uint16_t)(hdrp_cull_shape_kind(s) | hdrp_cull_shape_category(s) << 8);
         set->bounds[i] =
             hdrp_cull_shape_bounds(s, set->camera, (float)set->width_px, (float)set->height_px);
         if (set->bounds[i].rect_px.x > set->bounds[i].rect_px.z) {
             continue; /* not seen: nobody asks for its planes */
         }
-        if (hdrp_cull_shape_plane_count(s) > 0u) {
+        if (!hdrp_i_cull_is_ball(set, i)) {
             hdrp_i_cull_project_planes(s, orthographic,
                                        set->planes + (size_t)i * 4u * HDRP_CULL_PLANES_STRIDE);
         }
@@ -1102,13 +1115,13 @@ static void hdrp_i_cull_collect(hdrp_i_cull_job* job, uint32_t coarse_row, uint3
     uint32_t present = 0u, category, i;
     memset(job->s.coarse_count, 0, across * sizeof *job->s.coarse_count);
     for (i = 0u; i < set->count; ++i) {
-        present |= 1u << hdrp_cull_shape_category(set->shapes[i]);
+        present |= 1u << hdrp_i_cull_category(set, i);
     }
     for (category = 0u; category < HDRP_CULL_CATEGORY_COUNT; ++category) {
         for (i = 0u; present >> category & 1u && i < set->count; ++i) {
             const hdrp_cull_bounds* b = &set->bounds[i];
             if (b->rect_px.y <= lower && b->rect_px.w >= upper && b->rect_px.x <= b->rect_px.z &&
-                hdrp_cull_shape_category(set->shapes[i]) == category) {
+                hdrp_i_cull_category(set, i) == category) {
                 hdrp_i_cull_spread(job, i, across);
             }
         }
@@ -1132,7 +1145,7 @@ static void hdrp_i_cull_gather(hdrp_i_cull_job* job, uint32_t column)
         s->lower[m] = b->rect_px.w;
         s->nearest[m] = b->nearest;
         s->farthest[m] = b->farthest;
-        job->candidate_end[hdrp_cull_shape_category(job->set->shapes[i])] = m + 1u;
+        job->candidate_end[hdrp_i_cull_category(job->set, i)] = m + 1u;
     }
     for (; m < ((count + 7u) & ~7u); ++m) {
         s->left[m] = s->upper[m] = s->right[m] = s->lower[m] = 0.0f;
@@ -1324,7 +1337,7 @@ static void hdrp_i_cull_find(hdrp_i_cull_job* job, hdrp_cull_tile tile, float lo
     }
     for (h = 0u; h < job->hit_count; ++h) {
         int there = job->s.hit_nearest[h] <= job->s.hit_farthest[h];
-        if (there && hdrp_cull_shape_plane_count(job->set->shapes[job->s.hit[h]]) > 0u) {
+        if (there && !hdrp_i_cull_is_ball(job->set, job->s.hit[h])) {
             hdrp_i_cull_test_planes(job, h, tile, orthographic);
             there = job->s.hit_nearest[h] <= job->s.hit_farthest[h];
         }
@@ -1595,7 +1608,7 @@ static uint32_t hdrp_i_cull_blocks_reached(const hdrp_i_cull_job* job, uint32_t 
     uint32_t of_block = job->lists->grid.cells.z * job->lists->grid.cells.w;
     uint32_t found[HDRP_I_CULL_BLOCKS], bits = 0u, block;
     /* Inside its ball is inside a shape only if it is one. */
-    uint32_t sure = hdrp_cull_shape_kind(*shape) == HDRP_CULL_KIND_BALL ? 2u : 0u;
+    uint32_t sure = hdrp_i_cull_is_ball(job->set, s->hit[h]) ? 2u : 0u;
     int all = (job->lists->desc.flags & HDRP_CULL_BLOCKS) != 0u;
     uint32_t any = hdrp_i_cull_ball_in_blocks(
         boxes, hdrp_v4_make(s->x[h], s->y[h], s->z[h], s->radius[h]), found);
@@ -1633,8 +1646,7 @@ static void hdrp_i_cull_test_pixels(hdrp_i_cull_job* job, hdrp_cull_tile tile, h
     hdrp_i_cull_balls_around_box(job, &whole);
     memset(s->masks, 0, job->hit_count * s->mask_words * sizeof *s->masks);
     for (h = 0u; h < job->hit_count; ++h) {
-        if (s->overlaps[h] &&
-            hdrp_cull_shape_kind(job->set->shapes[s->hit[h]]) == HDRP_CULL_KIND_BALL) {
+        if (s->overlaps[h] && hdrp_i_cull_is_ball(job->set, s->hit[h])) {
             if (s->mask_words > 0u) {
                 memset(s->masks + h * s->mask_words, 0xff, s->mask_words * sizeof *s->masks);
             }
