@@ -205,7 +205,8 @@ HDRP_FN hdrp_cull_camera hdrp_cull_camera_orthographic(hdrp_v3 eye, hdrp_v3 forw
  *  camera    valid
  *  returns   [-4e18,4e18]  x to the right, y up, z depth
  *  edges     none
- *  error     <= 3e-7 relative to the distance, per component  @accuracy cull_view_from_world
+ *  error     <= 8e-7 relative to the distance, per component, against a frame that is not rounded
+ *            @accuracy cull_view_from_world
  *  source    a definition
  *  note      the difference to the eye comes first, so that far from the origin nothing is lost
  *            that the position has not lost */
@@ -463,7 +464,8 @@ HDRP_FN float hdrp_i_cull_margin(hdrp_v3 p)
  *  shape    valid  in view space
  *  returns  valid  xyz centre, w radius, rounded up
  *  edges    the radius is 0 for a shape that reaches nothing
- *  error    <= 2e-6 relative, of a radius as long as the distance  @accuracy cull_shape_ball
+ *  error    <= 3e-6 relative to the larger of radius and distance, upwards
+ *           @accuracy cull_shape_ball
  *  source   a definition */
 HDRP_FN hdrp_v4 hdrp_cull_shape_ball(hdrp_cull_shape shape)
 {
@@ -947,8 +949,9 @@ HDRP_FN hdrp_cull_interval hdrp_i_cull_ball_orthographic(hdrp_cull_tile t, hdrp_
  *  ball          any     xyz centre in view space, w radius: hdrp_cull_shape_ball
  *  orthographic  [0,1]   1 for an orthographic camera
  *  returns       any     nearest > farthest where the ball misses the tile
- *  edges         depths may be negative: behind the camera; a ball around the eye begins there
- *  error         <= 3e-6 relative to the larger of distance and radius, as a radius: the interval
+ *  edges         depths may be negative: behind the camera; a ball around the eye begins there,
+ *                and so may one beside it
+ *  error         <= 4e-7 relative to the larger of distance and radius, as a radius: the interval
  *                is that of a ball so much larger or smaller  @accuracy cull_interval_ball
  *  source        derived: the extremes are those of the ball, of its circles in the four sides, or
  *                of its chords on the four edges of the tile; each counts if it is in the tile */
