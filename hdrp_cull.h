@@ -40,13 +40,15 @@
  *
  * >>index of the functions, without hdrp_cull_ (written by tools/api_check.py --write)
  *   grid: log2 series_scale grid_make tile_of_pixel slice cell
- *   lists: first last entry_index entry_covers lowest_bit
+ *   lists: first last entry_index entry_covers mask_words mask_word mask_bit lowest_bit
  *   sets of shapes: set_memory_size set_init set_begin set_project
  *   grids of lists: memory_size init begin measure_depth rows scratch_size build count masks
+ *       apply_blockers
  * >>end */
 #ifndef HDRP_CULL_H
 #define HDRP_CULL_H
 
+#include "hdrp_cull_blocker.h"
 #include "hdrp_cull_volume.h"
 
 #if HDRP_VERSION != 100
@@ -532,6 +534,24 @@ HDRP_API hdrp_result hdrp_cull_count(const hdrp_cull_lists* lists, hdrp_cull_sta
 HDRP_API hdrp_result hdrp_cull_masks(const hdrp_cull_lists* lists, uint32_t first_tile,
                                      uint32_t tile_count, uint32_t* words, uint32_t stride);
 
+/** Optional stage: lights leave the cells that their blockers keep dark, and for each of the others
+ *  a mask says which of its blockers pixels have to test.
+ *  lists       after hdrp_cull_build of the tiles' rows; lists become shorter, in the same order
+ *  job         after hdrp_cull_blocker_job_begin, for the camera of lists; lights are the first of
+ *              the shapes. It counts what was decided
+ *  first_tile  any  index of the first tile, row by row
+ *  tile_count  any  how many: at most up to grid.tiles.z times grid.tiles.w
+ *  masks       result: a word for each entry, at the index of the entry; as many as there are tiles
+ *              times entry_capacity. What belongs to no entry is left alone
+ *  returns     HDRP_OK
+ *  errors      HDRP_ERROR_NULL_POINTER, HDRP_ERROR_BAD_ARGUMENT for a bad range or another camera
+ *  range       tiles are independent; each job needs a hdrp_cull_blocker_job of its own
+ *  source      Kircher 2018, "Rendering Technology in Agents of Mayhem", slides on blocker tile
+ *              culling */
+HDRP_API hdrp_result hdrp_cull_apply_blockers(hdrp_cull_lists* lists, hdrp_cull_blocker_job* job,
+                                              uint32_t first_tile, uint32_t tile_count,
+                                              uint32_t* masks);
+
 #ifdef __cplusplus
 }
 #endif
@@ -545,6 +565,9 @@ HDRP_API hdrp_result hdrp_cull_masks(const hdrp_cull_lists* lists, uint32_t firs
 
 #if defined(HDRP_CULL_IMPLEMENTATION) && !defined(HDRP_GPU) && !defined(HDRP_I_CULL_IMPLEMENTED)
 #define HDRP_I_CULL_IMPLEMENTED
+
+/* Its bodies too, where it was included before the macro was defined. */
+#include "hdrp_cull_blocker.h"
 
 /* Lists are the same bits whether or not the target has fused multiply-adds. */
 #if defined(__clang__)
@@ -1978,6 +2001,106 @@ HDRP_API hdrp_result hdrp_cull_masks(const hdrp_cull_lists* lists, uint32_t firs
                 if (writing) {
                     words[c * stride + shape / 32u] |= 1u << (shape % 32u);
                 }
+            }
+        }
+    }
+    return HDRP_OK;
+}
+
+/* ---- blockers -------------------------------------------------------------------------------- */
+
+/* The depth at which slice k begins; good to 1e-6. */
+static float hdrp_i_cull_slice_begin(hdrp_cull_grid grid, float scale, uint32_t k)
+{
+    float wanted = grid.series.y + (float)k / hdrp_max(scale, 1e-3f);
+    float octave = hdrp_floor(hdrp_clamp(wanted, -126.0f, 126.0f));
+    float z = hdrp_f32_from_bits((hdrp_u32)(int)(octave + 127.0f) << 23);
+    int i;
+    z += z * (wanted - octave);
+    /* The slope is that of the true logarithm, a hundredth off. */
+    for (i = 0; i < 4; ++i) {
+        z += z * 0.6931472f * (wanted - hdrp_cull_log2(z));
+    }
+    return z;
+}
+
+/* The depths of a cell, a little wider. */
+static hdrp_cull_interval hdrp_i_cull_slice_depths(const hdrp_cull_lists* lists, hdrp_v4 info,
+                                                   uint32_t k)
+{
+    hdrp_cull_interval r;
+    r.nearest = lists->camera.eye_near.w;
+    r.farthest = lists->camera.right_far.w;
+    if (lists->desc.slice_count == 1u) {
+        r.nearest = info.x;
+        r.farthest = info.y;
+        return r;
+    }
+    if (k > 0u) {
+        float z = hdrp_i_cull_slice_begin(lists->grid, info.z, k);
+        r.nearest = hdrp_clamp(z - z * 1e-5f, r.nearest, r.farthest);
+    }
+    if (k + 1u < lists->desc.slice_count) {
+        float z = hdrp_i_cull_slice_begin(lists->grid, info.z, k + 1u);
+        r.farthest = hdrp_clamp(z + z * 1e-5f, r.nearest, r.farthest);
+    }
+    return r;
+}
+
+/* Shortens the lists of a cell. */
+static void hdrp_i_cull_apply_cell(hdrp_cull_lists* lists, hdrp_cull_blocker_job* job, size_t at,
+                                   hdrp_cull_interval depths, uint32_t* masks)
+{
+    hdrp_u32x4 cell = lists->cells[at];
+    uint32_t counts[HDRP_CULL_CATEGORY_COUNT], n = cell.x, category, i;
+    for (category = 0u; category < HDRP_CULL_CATEGORY_COUNT; ++category) {
+        uint32_t begin = n, last = hdrp_cull_last(cell, category);
+        for (i = hdrp_cull_first(cell, category); i < last; ++i) {
+            uint32_t entry = lists->entries[i], mask;
+            uint32_t stays =
+                hdrp_cull_blocker_classify(job, hdrp_cull_entry_index(entry), depths, &mask);
+            if (stays) {
+                lists->entries[n] = entry;
+                masks[n] = mask;
+                ++n;
+            }
+        }
+        counts[category] = n - begin;
+    }
+    lists->cells[at].y = counts[0] | counts[1] << 16;
+    lists->cells[at].z = counts[2] | counts[3] << 16;
+}
+
+HDRP_API hdrp_result hdrp_cull_apply_blockers(hdrp_cull_lists* lists, hdrp_cull_blocker_job* job,
+                                              uint32_t first_tile, uint32_t tile_count,
+                                              uint32_t* masks)
+{
+    uint32_t t, k, slices;
+    if (!lists || !job || !job->set || (!masks && tile_count > 0u)) {
+        return HDRP_ERROR_NULL_POINTER;
+    }
+    if (hdrp_i_cull_bad_range(first_tile, tile_count, lists->grid.tiles.z * lists->grid.tiles.w) ||
+        memcmp(&job->set->camera, &lists->camera, sizeof lists->camera) != 0) {
+        return HDRP_ERROR_BAD_ARGUMENT;
+    }
+    slices = lists->desc.slice_count;
+    for (t = first_tile; t < first_tile + tile_count; ++t) {
+        hdrp_v4 info = lists->tiles[t];
+        uint32_t x0 = t % lists->grid.tiles.z * lists->grid.tiles.x, x1 = x0 + lists->grid.tiles.x;
+        uint32_t y0 = t / lists->grid.tiles.z * lists->grid.tiles.y, y1 = y0 + lists->grid.tiles.y;
+        hdrp_cull_tile tile =
+            hdrp_cull_tile_make(lists->camera, (float)x0, (float)y0,
+                                (float)(x1 < lists->desc.width_px ? x1 : lists->desc.width_px),
+                                (float)(y1 < lists->desc.height_px ? y1 : lists->desc.height_px),
+                                (float)lists->desc.width_px, (float)lists->desc.height_px);
+        hdrp_cull_interval depths = hdrp_i_cull_slice_depths(lists, info, 0u);
+        depths.farthest = hdrp_i_cull_slice_depths(lists, info, slices - 1u).farthest;
+        hdrp_cull_blocker_job_tile(job, &tile, depths);
+        for (k = 0u; k < slices; ++k) {
+            size_t at = (size_t)t * slices + k;
+            if ((lists->cells[at].y | lists->cells[at].z) != 0u) {
+                depths = hdrp_i_cull_slice_depths(lists, info, k);
+                hdrp_i_cull_apply_cell(lists, job, at, depths, masks);
             }
         }
     }

@@ -30,7 +30,7 @@
  * of hdrp_cull_volume.h; for the languages and the override macros see hdrp_math.h. The
  * algorithm layer is compiled in one source file:
  *
- *     #define HDRP_CULL_BLOCKER_IMPLEMENTATION           hdrp_cull.h does so with its own bodies
+ *     #define HDRP_CULL_IMPLEMENTATION
  *     #include "hdrp_cull_blocker.h"
  *
  * >>index of the functions, without hdrp_cull_ (written by tools/api_check.py --write)
@@ -1022,7 +1022,7 @@ HDRP_API uint32_t hdrp_cull_blocker_classify(hdrp_cull_blocker_job* job, uint32_
 
 #endif /* HDRP_CULL_BLOCKER_H */
 
-#if defined(HDRP_CULL_BLOCKER_IMPLEMENTATION) && !defined(HDRP_GPU) &&                             \
+#if defined(HDRP_CULL_IMPLEMENTATION) && !defined(HDRP_GPU) &&                                     \
     !defined(HDRP_I_CULL_BLOCKER_IMPLEMENTED)
 #define HDRP_I_CULL_BLOCKER_IMPLEMENTED
 
@@ -1343,4 +1343,4 @@ HDRP_API uint32_t hdrp_cull_blocker_classify(hdrp_cull_blocker_job* job, uint32_
 #pragma GCC pop_options
 #endif
 
-#endif /* HDRP_CULL_BLOCKER_IMPLEMENTATION */
+#endif /* HDRP_CULL_IMPLEMENTATION */

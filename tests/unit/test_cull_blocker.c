@@ -1,6 +1,6 @@
 /* test_cull_blocker.c - blockers, portals and clip planes: positions and cells against doubles.
  * SPDX-License-Identifier: MIT */
-#define HDRP_CULL_BLOCKER_IMPLEMENTATION
+#define HDRP_CULL_IMPLEMENTATION
 #include "cull_blocker_test.h"
 
 static hdrp_v3 v3(double x, double y, double z)

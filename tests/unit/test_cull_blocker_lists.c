@@ -1,0 +1,366 @@
+/* test_cull_blocker_lists.c - blockers in grids of lists: what leaves and what pixels have to test.
+ * SPDX-License-Identifier: MIT */
+#define HDRP_CULL_IMPLEMENTATION
+#include "hdrp_cull.h"
+#include "cull_blocker_test.h"
+
+#define WIDTH  200u
+#define HEIGHT 120u
+#define SHAPES 40u
+#define LIGHTS 30u /* the rest are decals and probes */
+#define LINKS  120u
+#define WALLS  90u
+
+typedef struct world {
+    hdrp_cull_camera camera;
+    hdrp_cull_shape shapes[SHAPES];
+    hdrp_v4 places[LIGHTS];
+    hdrp_cull_blocker_links lights[LIGHTS];
+    uint32_t links[LINKS];
+    hdrp_cull_blocker blockers[WALLS];
+    hdrp_cull_blocker_scene scene;
+    float depth[WIDTH * HEIGHT];
+} world;
+
+static hdrp_v3 in_box(uint64_t* seed, double size)
+{
+    return test_float(test_vec(test_between(seed, -size, size), test_between(seed, -size, size),
+                               test_between(seed, -size, size)));
+}
+
+static void make_world(world* w, uint64_t* seed, bool orthographic)
+{
+    memset(w, 0, sizeof *w);
+    hdrp_v3 eye = hdrp_v3_make(0.0f, 1.0f, 25.0f), ahead = hdrp_v3_make(0.1f, 0.0f, -1.0f);
+    hdrp_v3 up = hdrp_v3_make(0.0f, 1.0f, 0.0f);
+    w->camera = orthographic ? hdrp_cull_camera_orthographic(eye, ahead, up, -15.0f, 15.0f, -9.0f,
+                                                             9.0f, 0.1f, 100.0f)
+                             : hdrp_cull_camera_perspective(eye, ahead, up, -0.8f, 0.8f, -0.5f,
+                                                            0.5f, 0.1f, HDRP_CULL_FAR_INFINITE);
+    for (uint32_t i = 0; i < SHAPES; ++i) {
+        hdrp_v3 p = in_box(seed, 12.0), one = hdrp_v3_splat(1.0f);
+        hdrp_light light = hdrp_light_point(p, one, (float)test_between(seed, 3.0, 15.0));
+        if (i % 5u == 0u) {
+            light = hdrp_light_directional(test_float(test_direction(seed)), one, 0.0f);
+        }
+        if (i < LIGHTS) {
+            w->shapes[i] = hdrp_cull_shape_from_light(light);
+            w->places[i] = hdrp_cull_light_place(light);
+            w->lights[i].first = w->scene.link_count;
+            w->lights[i].count = test_below(seed, 4);
+            w->scene.link_count += w->lights[i].count;
+        } else {
+            w->shapes[i] = hdrp_cull_shape_sphere(
+                p, 5.0f, i % 2u ? HDRP_CULL_CATEGORY_ENVIRONMENT : HDRP_CULL_CATEGORY_DECAL);
+        }
+    }
+    uint32_t walls = 40, next = walls;
+    for (uint32_t i = 0; i < walls; ++i) {
+        w->blockers[i] = hdrp_cull_blocker_rectangle(
+            in_box(seed, 10.0), test_float(test_direction(seed)), up,
+            (float)test_log(seed, 0.5, 15.0), (float)test_log(seed, 0.5, 15.0));
+        if (i % 8u == 0u) {
+            w->blockers[i] =
+                hdrp_cull_blocker_plane(in_box(seed, 10.0), test_float(test_direction(seed)));
+        }
+        if (i % 3u == 0u) {
+            w->blockers[i] = hdrp_cull_blocker_with_portals(w->blockers[i], next, 1u + i % 2u);
+            for (uint32_t k = 0; k < 1u + i % 2u; ++k) {
+                w->blockers[next++] = hdrp_cull_blocker_rectangle(
+                    hdrp_v3_from_v4(w->blockers[i].center), hdrp_v3_from_v4(w->blockers[i].front),
+                    up, 1.0f + (float)k, 1.0f);
+            }
+        }
+    }
+    for (uint32_t i = 0; i < w->scene.link_count; ++i) {
+        w->links[i] = test_below(seed, walls);
+    }
+    w->scene.places = w->places;
+    w->scene.lights = w->lights;
+    w->scene.links = w->links;
+    w->scene.blockers = w->blockers;
+    w->scene.light_count = LIGHTS;
+    w->scene.blocker_count = next;
+    for (uint32_t i = 0; i < WIDTH * HEIGHT; ++i) {
+        uint32_t x = i % WIDTH, y = i / WIDTH;
+        w->depth[i] = 12.0f + 20.0f * (float)((x / 23u * 7u + y / 31u * 5u) % 11u) / 10.0f +
+                      0.02f * (float)(x % 23u);
+    }
+}
+
+/* Lists, before and after blockers. */
+typedef struct grid {
+    hdrp_cull_lists lists;
+    hdrp_cull_set set;
+    hdrp_cull_blocker_set blockers;
+    uint32_t* masks;
+    hdrp_u32x4* old_cells;
+    uint32_t* old_entries;
+    size_t cells, entries;
+    void* blocks[4];
+} grid;
+
+static void* block(size_t bytes)
+{
+    void* p = aligned_alloc(HDRP_MEMORY_ALIGNMENT, HDRP_MEMORY_ROUND_UP(bytes));
+    assert_non_null(p);
+    memset(p, 0xcd, bytes);
+    return p;
+}
+
+static void build(grid* g, const world* w, hdrp_cull_desc desc, bool with_depth)
+{
+    hdrp_cull_depth depth = {w->depth, WIDTH, NULL};
+    hdrp_cull_blocker_desc limits = {LIGHTS, LINKS, WALLS};
+    desc.width_px = WIDTH;
+    desc.height_px = HEIGHT;
+    size_t bytes = hdrp_cull_set_memory_size(SHAPES);
+    g->blocks[0] = block(bytes);
+    assert_int_equal(hdrp_cull_set_init(&g->set, SHAPES, g->blocks[0], bytes), HDRP_OK);
+    bytes = hdrp_cull_memory_size(&desc);
+    g->blocks[1] = block(bytes);
+    assert_int_equal(hdrp_cull_init(&g->lists, &desc, g->blocks[1], bytes), HDRP_OK);
+    bytes = hdrp_cull_blocker_memory_size(&limits);
+    g->blocks[2] = block(bytes);
+    assert_int_equal(hdrp_cull_blocker_init(&g->blockers, &limits, g->blocks[2], bytes), HDRP_OK);
+    assert_int_equal(hdrp_cull_blocker_begin(&g->blockers, &w->scene, &w->camera), HDRP_OK);
+    assert_int_equal(hdrp_cull_blocker_project(&g->blockers, 0, LIGHTS + w->scene.blocker_count),
+                     HDRP_OK);
+    assert_int_equal(hdrp_cull_set_begin(&g->set, &w->camera, WIDTH, HEIGHT, SHAPES), HDRP_OK);
+    assert_int_equal(hdrp_cull_set_project(&g->set, w->shapes, 0, SHAPES), HDRP_OK);
+    assert_int_equal(hdrp_cull_begin(&g->lists, &g->set), HDRP_OK);
+    if (with_depth) {
+        assert_int_equal(hdrp_cull_measure_depth(&g->lists, &depth, 0, g->lists.grid.tiles.w),
+                         HDRP_OK);
+    }
+    bytes = hdrp_cull_scratch_size(&g->lists.desc);
+    g->blocks[3] = block(bytes);
+    assert_int_equal(hdrp_cull_build(&g->lists, &g->set, &depth, 0, hdrp_cull_rows(&g->lists),
+                                     g->blocks[3], bytes),
+                     HDRP_OK);
+    size_t tiles = (size_t)g->lists.grid.tiles.z * g->lists.grid.tiles.w;
+    g->cells = tiles * g->lists.desc.slice_count;
+    g->entries = tiles * g->lists.desc.entry_capacity;
+    g->old_cells = block(g->cells * sizeof *g->old_cells);
+    g->old_entries = block(g->entries * sizeof *g->old_entries);
+    g->masks = block(g->entries * sizeof *g->masks);
+    memcpy(g->old_cells, g->lists.cells, g->cells * sizeof *g->old_cells);
+    memcpy(g->old_entries, g->lists.entries, g->entries * sizeof *g->old_entries);
+}
+
+static void drop(grid* g)
+{
+    for (int i = 0; i < 4; ++i) {
+        free(g->blocks[i]);
+    }
+    free(g->old_cells);
+    free(g->old_entries);
+    free(g->masks);
+}
+
+/* Applies blockers in a number of jobs, the last range first. */
+static hdrp_cull_blocker_stats apply(grid* g, uint32_t jobs)
+{
+    hdrp_cull_blocker_stats sum = {0};
+    uint32_t tiles = g->lists.grid.tiles.z * g->lists.grid.tiles.w;
+    size_t bytes = hdrp_cull_blocker_scratch_size(&g->blockers);
+    void* scratch = block(bytes);
+    for (uint32_t j = jobs; j-- > 0u;) {
+        hdrp_cull_blocker_job job;
+        uint32_t first = tiles * j / jobs, end = tiles * (j + 1u) / jobs;
+        assert_int_equal(hdrp_cull_blocker_job_begin(&job, &g->blockers, scratch, bytes), HDRP_OK);
+        assert_int_equal(hdrp_cull_apply_blockers(&g->lists, &job, first, end - first, g->masks),
+                         HDRP_OK);
+        sum.lights += job.stats.lights;
+        sum.lights_removed += job.stats.lights_removed;
+        sum.pixel += job.stats.pixel;
+        sum.none += job.stats.none;
+        sum.whole += job.stats.whole;
+        sum.shadows += job.stats.shadows;
+    }
+    free(scratch);
+    return sum;
+}
+
+/* Where a shape is in the list of a cell, or -1. */
+static int find(const uint32_t* entries, hdrp_u32x4 cell, uint32_t shape)
+{
+    for (uint32_t i = hdrp_cull_first(cell, 0); i < hdrp_cull_last(cell, 3); ++i) {
+        if (hdrp_cull_entry_index(entries[i]) == shape) {
+            return (int)i;
+        }
+    }
+    return -1;
+}
+
+static int compare_at(const grid* g, const world* w, float x, float y, float z)
+{
+    hdrp_v4 window = w->camera.window;
+    float k = w->camera.forward_orthographic.w > 0.0f ? 1.0f : z;
+    float u = (window.x + window.z * x / (float)WIDTH) * k;
+    float v = (window.y + window.w * (1.0f - y / (float)HEIGHT)) * k;
+    test_v3 p = test_mad(test_of(w->camera.eye_near), test_of(w->camera.right_far), (double)u);
+    p = test_mad(p, test_of(w->camera.up), (double)v);
+    p = test_mad(p, test_of(w->camera.forward_orthographic), (double)z);
+    uint32_t tile = hdrp_cull_tile_of_pixel(g->lists.grid, (uint32_t)x, (uint32_t)y);
+    uint32_t at = hdrp_cull_cell(g->lists.grid, tile,
+                                 hdrp_cull_slice(g->lists.grid, g->lists.tiles[tile].z, z));
+    int wrong = 0;
+    for (uint32_t i = 0; i < LIGHTS; ++i) {
+        int before = find(g->old_entries, g->old_cells[at], i);
+        int after = find(g->lists.entries, g->lists.cells[at], i);
+        bool lit = test_reaches(&w->scene, i, 0xffffffffu, p);
+        wrong += before < 0 && after >= 0;
+        if (before >= 0) {
+            wrong += lit != (after >= 0 && test_reaches(&w->scene, i, g->masks[after], p));
+        }
+    }
+    return wrong;
+}
+
+static void lists_and_masks_decide_as_all_blockers_do(void** state)
+{
+    (void)state;
+    static world w;
+    static grid g;
+    uint64_t seed = 1, removed = 0, pixel = 0, none = 0;
+    for (int i = 0; i < 24; ++i) {
+        hdrp_cull_desc desc = {0};
+        bool with_depth = i % 3 != 0, tiles = i % 4 >= 2;
+        desc.tile_width_px = tiles ? 16u : 32u;
+        desc.tile_height_px = tiles ? 16u : 24u;
+        desc.slice_count = tiles ? 1u : i % 2 ? 24u : 3u;
+        desc.flags = i % 5 == 0 ? HDRP_CULL_ONE_SERIES : 0u;
+        make_world(&w, &seed, i % 6 == 5);
+        build(&g, &w, desc, with_depth);
+        hdrp_cull_blocker_stats stats = apply(&g, 1);
+        int wrong = 0;
+        for (int q = 0; q < 6000; ++q) {
+            uint32_t x = test_below(&seed, WIDTH), y = test_below(&seed, HEIGHT);
+            float z = (float)test_log(&seed, 0.1, 90.0);
+            if (with_depth && (tiles || q % 2)) {
+                z = w.depth[y * WIDTH + x];
+            }
+            wrong += compare_at(&g, &w, (float)x + 0.5f, (float)y + 0.5f, z);
+        }
+        assert_int_equal(wrong, 0);
+        if (i < 4) {
+            print_message("%llu of %llu lights left cells, %llu pairs none, %llu per pixel\n",
+                          (unsigned long long)stats.lights_removed,
+                          (unsigned long long)stats.lights, (unsigned long long)stats.none,
+                          (unsigned long long)stats.pixel);
+        }
+        removed += stats.lights_removed;
+        pixel += stats.pixel;
+        none += stats.none;
+        drop(&g);
+    }
+    assert_true(removed > 1000u && pixel > 1000u && none > 1000u);
+}
+
+static void what_stays_keeps_its_order_and_its_category(void** state)
+{
+    (void)state;
+    static world w;
+    static grid g;
+    uint64_t seed = 2;
+    hdrp_cull_desc desc = {0};
+    make_world(&w, &seed, false);
+    build(&g, &w, desc, true);
+    hdrp_cull_blocker_stats stats = apply(&g, 3);
+    uint64_t before = 0, after = 0, lights = 0;
+    for (size_t c = 0; c < g.cells; ++c) {
+        assert_int_equal(g.old_cells[c].x, g.lists.cells[c].x);
+        assert_int_equal(g.old_cells[c].w, g.lists.cells[c].w);
+        for (uint32_t category = 0; category < HDRP_CULL_CATEGORY_COUNT; ++category) {
+            uint32_t i = hdrp_cull_first(g.old_cells[c], category);
+            uint32_t end = hdrp_cull_last(g.old_cells[c], category);
+            before += end - i;
+            for (uint32_t k = i; k < end; ++k) {
+                lights += hdrp_cull_entry_index(g.old_entries[k]) < LIGHTS;
+            }
+            for (uint32_t k = hdrp_cull_first(g.lists.cells[c], category);
+                 k < hdrp_cull_last(g.lists.cells[c], category); ++k, ++i, ++after) {
+                while (i < end && g.old_entries[i] != g.lists.entries[k]) {
+                    assert_true(category == HDRP_CULL_CATEGORY_PUNCTUAL);
+                    ++i;
+                }
+                assert_true(i < end);
+                uint32_t shape = hdrp_cull_entry_index(g.lists.entries[k]);
+                assert_true(g.masks[k] < 8u && (shape < LIGHTS || g.masks[k] == 0u));
+            }
+        }
+    }
+    assert_int_equal(lights, stats.lights);
+    assert_int_equal(before - after, stats.lights_removed);
+    drop(&g);
+}
+
+static void any_split_into_jobs_gives_the_same_bits(void** state)
+{
+    (void)state;
+    static world w;
+    static grid g[4];
+    const uint32_t jobs[4] = {1, 2, 7, 28};
+    for (int i = 0; i < 4; ++i) {
+        uint64_t seed = 3;
+        hdrp_cull_desc desc = {0};
+        make_world(&w, &seed, false);
+        build(&g[i], &w, desc, true);
+        hdrp_cull_blocker_stats stats = apply(&g[i], jobs[i]);
+        assert_true(stats.lights_removed > 0u);
+        assert_memory_equal(g[0].lists.cells, g[i].lists.cells, g[0].cells * sizeof(hdrp_u32x4));
+        for (size_t c = 0; c < g[0].cells; ++c) {
+            hdrp_u32x4 cell = g[0].lists.cells[c];
+            size_t bytes = (hdrp_cull_last(cell, 3) - cell.x) * sizeof(uint32_t);
+            assert_memory_equal(g[0].masks + cell.x, g[i].masks + cell.x, bytes);
+            assert_memory_equal(g[0].lists.entries + cell.x, g[i].lists.entries + cell.x, bytes);
+        }
+    }
+    for (int i = 0; i < 4; ++i) {
+        drop(&g[i]);
+    }
+}
+
+static void bad_arguments_leave_lists_alone(void** state)
+{
+    (void)state;
+    static world w;
+    static grid g;
+    uint64_t seed = 4;
+    hdrp_cull_desc desc = {0};
+    hdrp_cull_blocker_job job;
+    make_world(&w, &seed, false);
+    build(&g, &w, desc, false);
+    uint32_t tiles = g.lists.grid.tiles.z * g.lists.grid.tiles.w;
+    size_t bytes = hdrp_cull_blocker_scratch_size(&g.blockers);
+    void* scratch = block(bytes);
+    assert_int_equal(hdrp_cull_blocker_job_begin(&job, &g.blockers, scratch, bytes), HDRP_OK);
+    assert_int_equal(hdrp_cull_apply_blockers(NULL, &job, 0, tiles, g.masks),
+                     HDRP_ERROR_NULL_POINTER);
+    assert_int_equal(hdrp_cull_apply_blockers(&g.lists, NULL, 0, tiles, g.masks),
+                     HDRP_ERROR_NULL_POINTER);
+    assert_int_equal(hdrp_cull_apply_blockers(&g.lists, &job, 0, tiles, NULL),
+                     HDRP_ERROR_NULL_POINTER);
+    assert_int_equal(hdrp_cull_apply_blockers(&g.lists, &job, 1, tiles, g.masks),
+                     HDRP_ERROR_BAD_ARGUMENT);
+    assert_int_equal(hdrp_cull_apply_blockers(&g.lists, &job, tiles, 0, NULL), HDRP_OK);
+    g.lists.camera.eye_near.x += 1.0f;
+    assert_int_equal(hdrp_cull_apply_blockers(&g.lists, &job, 0, tiles, g.masks),
+                     HDRP_ERROR_BAD_ARGUMENT);
+    assert_memory_equal(g.old_cells, g.lists.cells, g.cells * sizeof *g.old_cells);
+    assert_memory_equal(g.old_entries, g.lists.entries, g.entries * sizeof *g.old_entries);
+    free(scratch);
+    drop(&g);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(lists_and_masks_decide_as_all_blockers_do),
+        cmocka_unit_test(what_stays_keeps_its_order_and_its_category),
+        cmocka_unit_test(any_split_into_jobs_gives_the_same_bits),
+        cmocka_unit_test(bad_arguments_leave_lists_alone),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
