@@ -52,7 +52,7 @@
  *   attenuation: inv_range_sq window falloff falloff_gltf versine cone_shape_make cone_attenuation
  *       solid_angle_spot candela_from_lumen_spot lumen_from_candela_spot pyramid_shape_make
  *       pyramid_attenuation box_attenuation
- *   light record: type affects directional point spot pyramid box
+ *   light record: type affects sign directional point spot pyramid box
  *   evaluation: eval_directional eval_point eval_spot eval_pyramid eval_box eval
  * >>end */
 #ifndef HDRP_LIGHT_H
