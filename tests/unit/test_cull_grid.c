@@ -207,6 +207,38 @@ static void entries_hold_an_index_and_blocks(void** state)
     }
 }
 
+/* Each pixel of a tile has a bit of its own, and each block bits that follow each other. */
+static void masks_have_a_bit_for_each_pixel(void** state)
+{
+    static const uint32_t sizes[][2] = {{16, 16}, {8, 8}, {32, 16}, {5, 3}, {1, 1}, {64, 64}};
+    (void)state;
+    for (size_t k = 0; k < sizeof sizes / sizeof sizes[0]; ++k) {
+        uint32_t w = sizes[k][0], h = sizes[k][1], bits[200] = {0};
+        hdrp_cull_grid g =
+            hdrp_cull_grid_make(camera_of(1, 10), hdrp_u32x4_make(7 * w, 5 * h, 1, 9),
+                                hdrp_u32x4_make(w, h, 0, 0), 0, 0);
+        uint32_t words = hdrp_cull_mask_words(g), of_block = g.cells.z * g.cells.w;
+        assert_true(words <= 200u && words * 32u >= 16u * of_block);
+        assert_true(words * 32u < 16u * of_block + 32u);
+        for (uint32_t y = 0; y < h; ++y) {
+            for (uint32_t x = 0; x < w; ++x) {
+                uint32_t word = hdrp_cull_mask_word(g, 3u, 2u * w + x, h + y);
+                uint32_t bit = hdrp_cull_mask_bit(g, 2u * w + x, h + y);
+                uint32_t block = y / g.cells.w * 4u + x / g.cells.z;
+                assert_true(word >= 3u * words && word < 4u * words && bit < 32u);
+                word -= 3u * words;
+                assert_true((bits[word] >> bit & 1u) == 0u);
+                bits[word] |= 1u << bit;
+                assert_int_equal((word * 32u + bit) / of_block, block);
+            }
+        }
+    }
+    assert_int_equal(
+        hdrp_cull_mask_words(hdrp_cull_grid_make(camera_of(1, 10), hdrp_u32x4_make(64, 64, 1, 9),
+                                                 hdrp_u32x4_make(16, 16, 0, 0), 0, 0)),
+        8u);
+}
+
 static void every_bit_is_the_lowest_of_some_words(void** state)
 {
     (void)state;
@@ -231,6 +263,7 @@ int main(void)
         cmocka_unit_test(pixels_find_their_tile_and_cell),
         cmocka_unit_test(cells_know_their_categories),
         cmocka_unit_test(entries_hold_an_index_and_blocks),
+        cmocka_unit_test(masks_have_a_bit_for_each_pixel),
         cmocka_unit_test(every_bit_is_the_lowest_of_some_words),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
