@@ -469,7 +469,7 @@ static bool is_selected(const char* function, int count, char** names)
 int main(int argc, char** argv)
 {
     static const ex_sweep* const sweeps[] = {ex_sweeps_built_in, ex_sweeps_math, ex_sweeps_brdf,
-                                             ex_sweeps_light, ex_sweeps_pack};
+                                             ex_sweeps_light,    ex_sweeps_cull, ex_sweeps_pack};
     struct timespec start, end;
     int first = 1;
     timespec_get(&start, TIME_UTC);

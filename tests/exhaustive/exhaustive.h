@@ -71,7 +71,7 @@ typedef struct ex_search {
 
 /* Tables end with a function of NULL. */
 extern const ex_sweep ex_sweeps_built_in[], ex_sweeps_math[], ex_sweeps_brdf[], ex_sweeps_light[],
-    ex_sweeps_pack[];
+    ex_sweeps_cull[], ex_sweeps_pack[];
 extern const ex_walk ex_walks_pack[];
 extern const ex_search ex_searches_pack[];
 
