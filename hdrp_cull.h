@@ -49,6 +49,7 @@
 #define HDRP_CULL_H
 
 #include "hdrp_cull_blocker.h"
+#include "hdrp_cull_variant.h"
 #include "hdrp_cull_volume.h"
 
 #if HDRP_VERSION != 100
@@ -293,8 +294,8 @@ HDRP_FN hdrp_u32 hdrp_i_cull_mask_place(hdrp_cull_grid grid, hdrp_u32 x_px, hdrp
  *  edges    none
  *  error    none: a definition
  *  source   a definition
- *  note     sixteen blocks of half a word or more: two words are the pixels of 8 x 4 and so on, which
- *           a group of threads asks together */
+ *  note     one block after the other, of half a word or more each: a word is 8 x 4 pixels, which a
+ *           group of threads asks together */
 HDRP_FN hdrp_u32 hdrp_cull_mask_words(hdrp_cull_grid grid)
 {
     return (grid.cells.z * grid.cells.w + 1u) >> 1;
@@ -566,8 +567,9 @@ HDRP_API hdrp_result hdrp_cull_apply_blockers(hdrp_cull_lists* lists, hdrp_cull_
 #if defined(HDRP_CULL_IMPLEMENTATION) && !defined(HDRP_GPU) && !defined(HDRP_I_CULL_IMPLEMENTED)
 #define HDRP_I_CULL_IMPLEMENTED
 
-/* Its bodies too, where it was included before the macro was defined. */
+/* Their bodies too, where they were included before the macro was defined. */
 #include "hdrp_cull_blocker.h"
+#include "hdrp_cull_variant.h"
 
 /* Lists are the same bits whether or not the target has fused multiply-adds. */
 #if defined(__clang__)
@@ -783,7 +785,7 @@ static size_t hdrp_i_cull_words(const hdrp_cull_desc* d)
     return (d->flags & HDRP_CULL_MASKS) ? (of_block + 1u) / 2u : 0u;
 }
 
-/* Columns, rows and their product; 0 where cells, entries or masks cannot be counted with 32 bits. */
+/* Columns, rows and their product; 0 where cells, entries or masks are too many for 32 bits. */
 static uint32_t hdrp_i_cull_tiles(const hdrp_cull_desc* d, uint32_t* columns, uint32_t* rows)
 {
     uint64_t tiles;
@@ -1002,9 +1004,9 @@ HDRP_API hdrp_result hdrp_cull_measure_depth(hdrp_cull_lists* lists, const hdrp_
 }
 
 /* ---- lists of a tile --------------------------------------------------------------------------
- * A coarse cell is a block of tiles. What is seen in it is a candidate for each of its tiles; what a
- * tile finds among the candidates is a hit. Both lie in arrays of their own, one for each member, so
- * that compilers test several of them at once. */
+ * A coarse cell is a block of tiles. What is seen in it is a candidate for each of its tiles; what
+ * a tile finds among the candidates is a hit. Both lie in arrays of their own, one for each member,
+ * so that compilers test several of them at once. */
 
 typedef struct hdrp_i_cull_scratch {
     uint16_t* coarse;       /* shapes of each coarse cell of a row */
@@ -1344,8 +1346,8 @@ static void hdrp_i_cull_keep(hdrp_i_cull_job* job, const uint16_t* marks)
     job->hit_count = n;
 }
 
-/* The shapes that reach the rectangle between two depths become hits; where its pixels will be asked,
- * those of balls that may reach it. */
+/* The shapes that reach the rectangle between two depths become hits; where its pixels will be
+ * asked, those of balls that may reach it. */
 static void hdrp_i_cull_find(hdrp_i_cull_job* job, hdrp_cull_tile tile, float lo, float hi,
                              int pixels)
 {
@@ -1526,7 +1528,7 @@ static void hdrp_i_cull_box_blocks(const hdrp_i_cull_job* job, const hdrp_cull_t
     }
 }
 
-/* Of each block: 0 out of reach of a ball, 1 perhaps in reach, 3 inside. Returns the bits of all. */
+/* Of each block: 0 out of reach of a ball, 1 perhaps in reach, 3 inside. Returns all of them. */
 static uint32_t hdrp_i_cull_ball_in_blocks(const hdrp_i_cull_boxes* b, hdrp_v4 ball,
                                            uint32_t found[HDRP_I_CULL_BLOCKS])
 {
@@ -1567,8 +1569,8 @@ static void hdrp_i_cull_balls_around_box(const hdrp_i_cull_job* job, const hdrp_
     }
 }
 
-/* Which of some pixels a shape of a kind reaches; returns whether it is any. A constant kind leaves a loop without the
- * other ones in it. */
+/* Which of some pixels a shape of a kind reaches; returns whether it is any. A constant kind leaves
+ * a loop without the other ones in it. */
 HDRP_FN uint32_t hdrp_i_cull_reach_kind(const hdrp_i_cull_scratch* s, hdrp_cull_shape shape,
                                         hdrp_u32 kind, uint32_t first, uint32_t count)
 {
@@ -1781,7 +1783,8 @@ static void hdrp_i_cull_slices(hdrp_i_cull_job* job, float scale)
 }
 
 /* How many hits of the four categories are in each slice, 16 bits each. First what each slice has
- * more than the one before it; sums of whole words are sums of their parts, whatever they borrow. */
+ * more than the one before it: sums of whole words are sums of their parts, whatever those borrow
+ * from each other. */
 static void hdrp_i_cull_count_slices(const hdrp_i_cull_job* job, uint64_t* counts)
 {
     uint32_t slices = job->lists->desc.slice_count, category, h = 0u, k;
@@ -2047,6 +2050,16 @@ static hdrp_cull_interval hdrp_i_cull_slice_depths(const hdrp_cull_lists* lists,
     return r;
 }
 
+/* The pixels of an entry go with it. */
+static void hdrp_i_cull_move_mask(const hdrp_cull_lists* lists, size_t from, size_t to)
+{
+    size_t words = hdrp_i_cull_words(&lists->desc);
+    if (words > 0u && from != to) {
+        memcpy(lists->masks + to * words, lists->masks + from * words,
+               words * sizeof *lists->masks);
+    }
+}
+
 /* Shortens the lists of a cell. */
 static void hdrp_i_cull_apply_cell(hdrp_cull_lists* lists, hdrp_cull_blocker_job* job, size_t at,
                                    hdrp_cull_interval depths, uint32_t* masks)
@@ -2062,6 +2075,7 @@ static void hdrp_i_cull_apply_cell(hdrp_cull_lists* lists, hdrp_cull_blocker_job
             if (stays) {
                 lists->entries[n] = entry;
                 masks[n] = mask;
+                hdrp_i_cull_move_mask(lists, i, n);
                 ++n;
             }
         }
