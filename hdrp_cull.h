@@ -101,7 +101,7 @@ typedef char hdrp_i_cull_grid_size_of[sizeof(hdrp_cull_grid) == 48 ? 1 : -1];
  *  returns  [-126,128]  rises with x; exact for powers of 2
  *  edges    smaller x and NaN count as FLT_MIN
  *  error    <= 1.3e-4 absolute  @accuracy cull_log2
- *  source   log2(1 + m) = m + m (1 - m) q(m) with q a minimax polynomial; coefficients own */
+ *  source   our own minimax fit of q in log2(1 + m) = m + m (1 - m) q(m), by tools/fit_cull.py */
 HDRP_FN float hdrp_cull_log2(float x)
 {
     hdrp_u32 u = hdrp_bits_from_f32(hdrp_clamp(x, HDRP_FLT_MIN, HDRP_FLT_MAX));
