@@ -135,16 +135,16 @@ static void add_facade(rd_builder* b, const paints* p, float side, int house)
 
 static void add_side(rd_builder* b, const paints* p, float side)
 {
-    float back = FACADE + DEPTH;
+    float inside = FACADE + 0.5f * THICKNESS, back = FACADE + DEPTH;
     add_box(b, p->room, side, hdrp_v3_make(back, 0.0f, STREET_END),
             hdrp_v3_make(back + THICKNESS, HEIGHT, 0.0f), "back wall");
-    add_box(b, p->room, side, hdrp_v3_make(FACADE, HEIGHT, STREET_END),
+    add_box(b, p->room, side, hdrp_v3_make(inside, HEIGHT, STREET_END),
             hdrp_v3_make(back, HEIGHT + THICKNESS, 0.0f), "ceiling");
     add_box(b, p->kerb, side, hdrp_v3_make(3.6f, -0.2f, STREET_END), hdrp_v3_make(back, 0.1f, 0.0f),
             "pavement");
     for (int i = 0; i <= HOUSES; ++i) {
         float z = -HOUSE_WIDTH * (float)i;
-        add_box(b, p->room, side, hdrp_v3_make(FACADE, 0.0f, z - 0.5f * THICKNESS),
+        add_box(b, p->room, side, hdrp_v3_make(inside, 0.0f, z - 0.5f * THICKNESS),
                 hdrp_v3_make(back, HEIGHT, z + 0.5f * THICKNESS), "side wall");
     }
     for (int i = 0; i < HOUSES; ++i) {

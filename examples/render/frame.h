@@ -31,6 +31,7 @@ void rd_gbuffer_row(const rd_sub_frame* s, rd_worker* w, int y);
 void rd_occlusion_row(const rd_sub_frame* s, rd_worker* w, int y);
 void rd_occlusion_blur_row(const rd_sub_frame* s, rd_worker* w, int y);
 void rd_frame_view_row(const rd_sub_frame* s, rd_worker* w, int y);
+void rd_lists_view_row(const rd_sub_frame* s, rd_worker* w, int y);
 void rd_deferred_row(const rd_sub_frame* s, rd_worker* w, int y);
 void rd_forward_row(const rd_sub_frame* s, rd_worker* w, int y);
 void rd_layers_row(const rd_sub_frame* s, rd_worker* w, int y);
@@ -39,6 +40,8 @@ void rd_reference_row(const rd_sub_frame* s, rd_worker* w, int y);
 
 /* The lights of all tiles and clusters, as soon as the visible surfaces are known. */
 void rd_lists_build(const rd_sub_frame* s);
+/* And the variant of each tile. */
+void rd_variants_build(const rd_sub_frame* s);
 
 void rd_layer_list_free(struct rd_layer_list* list);
 
@@ -101,16 +104,16 @@ static inline bool rd_has(const rd_sub_frame* s, uint32_t feature)
 }
 
 /* What the light loop walks; NULL: it visits all lights. */
-static inline const hdrp_cull_lists* rd_opaque_lists(const rd_sub_frame* s)
+static inline const rd_grid* rd_opaque_lists(const rd_sub_frame* s)
 {
     const rd_lists* l = &s->r->lists;
-    return l->ready && rd_has(s, RD_FEATURE_LISTS) ? &l->tiles.lists : NULL;
+    return l->ready && rd_has(s, RD_FEATURE_LISTS) ? &l->tiles : NULL;
 }
 
-static inline const hdrp_cull_lists* rd_layer_lists(const rd_sub_frame* s)
+static inline const rd_grid* rd_layer_lists(const rd_sub_frame* s)
 {
     const rd_lists* l = &s->r->lists;
-    return l->ready && rd_has(s, RD_FEATURE_LISTS) ? &l->clusters.lists : NULL;
+    return l->ready && rd_has(s, RD_FEATURE_LISTS) ? &l->clusters : NULL;
 }
 
 #endif

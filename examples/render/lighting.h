@@ -5,7 +5,6 @@
 
 #include "environment.h"
 #include "hdrp_brdf.h"
-#include "hdrp_cull.h"
 #include "lights.h"
 #include "surface.h"
 #include "trace.h"
@@ -81,8 +80,9 @@ typedef struct rd_shaded {
 
 typedef struct rd_shade_counts {
     uint64_t shadow_rays;
-    /* Pairs of a point and a light: visited, and in the range of the light. */
-    uint64_t visited, in_range;
+    /* Pairs of a point and a light: visited, and in the range of the light; by tiles or without
+     * lists, and by clusters. */
+    uint64_t visited[2], in_range[2];
     uint64_t samples[RD_SHADE_VARIANTS];
     /* Of calls whose points all took the same variant. */
     uint64_t timed_samples[RD_SHADE_VARIANTS];
@@ -91,9 +91,10 @@ typedef struct rd_shade_counts {
 
 const char* rd_shade_variant_name(int variant);
 
-/* At most RD_SHADE_MAX points. `lists` NULL: they visit all lights, and their entries mean nothing.
- * `index` counts the samples of a pixel. */
-void rd_shade(const rd_lighting* l, const hdrp_cull_lists* lists, const rd_shade_point* points,
+/* At most RD_SHADE_MAX points. `grid`, of lists.h, has the entries of the points; NULL: they visit all
+ * lights. `index` counts the samples of a pixel. */
+struct rd_grid;
+void rd_shade(const rd_lighting* l, const struct rd_grid* grid, const rd_shade_point* points,
               uint32_t count, uint32_t index, rd_shaded* out, rd_shade_counts* counts);
 
 #endif

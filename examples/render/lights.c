@@ -83,32 +83,58 @@ static hdrp_light generated(const rd_lights_desc* d, uint32_t i)
 
 /* >>the list */
 
+static void add(rd_lights* lights, hdrp_light light, uint32_t first_blocker, uint32_t blockers)
+{
+    hdrp_cull_blocker_links links = {first_blocker, blockers};
+    lights->items[lights->count] = light;
+    lights->places[lights->count] = hdrp_cull_light_place(light);
+    lights->links[lights->count++] = links;
+}
+
+static void set_blockers(rd_lights* lights, const rd_scene* scene)
+{
+    hdrp_cull_blocker_scene* b = &lights->blockers;
+    b->places = lights->places;
+    b->lights = lights->links;
+    b->links = scene->blocker_links;
+    b->blockers = scene->blockers;
+    b->light_count = lights->count;
+    b->link_count = (uint32_t)scene->blocker_link_count;
+    b->blocker_count = (uint32_t)scene->blocker_count;
+}
+
 bool rd_lights_make(rd_lights* lights, const rd_lights_desc* d)
 {
     size_t n = (size_t)d->scene->light_count + d->generated + 1;
-    uint32_t count = 0;
+    memset(lights, 0, sizeof *lights);
     lights->items = (hdrp_light*)malloc(n * sizeof *lights->items);
-    lights->count = 0;
-    if (!lights->items) {
+    lights->places = (hdrp_v4*)malloc(n * sizeof *lights->places);
+    lights->links = (hdrp_cull_blocker_links*)malloc(n * sizeof *lights->links);
+    if (!lights->items || !lights->places || !lights->links) {
+        rd_lights_free(lights);
         return false;
     }
     if (d->sun) {
-        lights->items[count] = *d->sun;
-        lights->items[count++].bits.x |= HDRP_LIGHT_FEATURE_SHADOW;
+        hdrp_light sun = *d->sun;
+        sun.bits.x |= HDRP_LIGHT_FEATURE_SHADOW;
+        add(lights, sun, 0u, 0u);
     }
     for (int i = 0; i < d->scene->light_count; ++i) {
-        lights->items[count++] = rd_light_record(&d->scene->lights[i]);
+        const rd_light* l = &d->scene->lights[i];
+        add(lights, rd_light_record(l), l->first_blocker, l->blocker_count);
     }
     for (uint32_t i = 0; i < d->generated; ++i) {
-        lights->items[count++] = generated(d, i);
+        add(lights, generated(d, i), 0u, 0u);
     }
-    lights->count = count;
+    set_blockers(lights, d->scene);
     return true;
 }
 
 void rd_lights_free(rd_lights* lights)
 {
     free(lights->items);
+    free(lights->places);
+    free(lights->links);
     memset(lights, 0, sizeof *lights);
 }
 

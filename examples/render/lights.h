@@ -8,6 +8,9 @@
 typedef struct rd_lights {
     hdrp_light* items;
     uint32_t count;
+    hdrp_cull_blocker_scene blockers; /* of the same lights */
+    hdrp_v4* places;                  /* that it refers to */
+    hdrp_cull_blocker_links* links;
 } rd_lights;
 
 /* What the light list is made of. */

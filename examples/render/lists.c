@@ -17,7 +17,24 @@
 
 /* >>memory */
 
-static bool place_grid(rd_grid* g, const hdrp_cull_desc* desc, uint32_t threads)
+static void free_grid(rd_grid* g)
+{
+    free(g->memory);
+    free(g->scratch);
+    free(g->masks);
+}
+
+static bool place_masks(const rd_lists* l, rd_grid* g)
+{
+    const hdrp_cull_desc* d = &g->lists.desc;
+    size_t columns = (d->width_px + d->tile_width_px - 1u) / d->tile_width_px;
+    size_t rows = (d->height_px + d->tile_height_px - 1u) / d->tile_height_px;
+    size_t entries = columns * rows * d->entry_capacity;
+    g->masks = l->scene ? (uint32_t*)calloc(entries, sizeof *g->masks) : NULL;
+    return !l->scene || g->masks;
+}
+
+static bool place_grid(const rd_lists* l, rd_grid* g, const hdrp_cull_desc* desc)
 {
     rd_grid n;
     size_t bytes = hdrp_cull_memory_size(desc);
@@ -27,14 +44,13 @@ static bool place_grid(rd_grid* g, const hdrp_cull_desc* desc, uint32_t threads)
         return false;
     }
     n.memory = aligned_alloc(HDRP_MEMORY_ALIGNMENT, bytes);
-    n.scratch = aligned_alloc(HDRP_MEMORY_ALIGNMENT, n.scratch_bytes * threads);
-    if (!n.memory || !n.scratch || hdrp_cull_init(&n.lists, desc, n.memory, bytes) != HDRP_OK) {
-        free(n.memory);
-        free(n.scratch);
+    n.scratch = aligned_alloc(HDRP_MEMORY_ALIGNMENT, n.scratch_bytes * l->threads);
+    if (!n.memory || !n.scratch || hdrp_cull_init(&n.lists, desc, n.memory, bytes) != HDRP_OK ||
+        !place_masks(l, &n)) {
+        free_grid(&n);
         return false;
     }
-    free(g->memory);
-    free(g->scratch);
+    free_grid(g);
     *g = n;
     return true;
 }
@@ -53,7 +69,18 @@ static bool place_set(rd_lists* l)
     return l->set_memory && hdrp_cull_set_init(&l->set, l->count, l->set_memory, bytes) == HDRP_OK;
 }
 
-bool rd_lists_begin(rd_lists* l, const rd_lights* lights, int width, int height, float size_m)
+static bool place_blockers(rd_lists* l, const hdrp_cull_blocker_scene* scene)
+{
+    hdrp_cull_blocker_desc d = {scene->light_count, scene->link_count, scene->blocker_count};
+    size_t bytes = hdrp_cull_blocker_memory_size(&d);
+    l->scene = scene;
+    l->blocker_memory = aligned_alloc(HDRP_MEMORY_ALIGNMENT, bytes);
+    return l->blocker_memory &&
+           hdrp_cull_blocker_init(&l->blockers, &d, l->blocker_memory, bytes) == HDRP_OK;
+}
+
+bool rd_lists_begin(rd_lists* l, const rd_lights* lights, bool blocked, int width, int height,
+                    float size_m)
 {
     hdrp_cull_desc tiles, clusters;
     memset(l, 0, sizeof *l);
@@ -77,8 +104,9 @@ bool rd_lists_begin(rd_lists* l, const rd_lights* lights, int width, int height,
     clusters.slice_count = SLICES;
     clusters.entry_capacity = room(l, &clusters, CLUSTER_ENTRIES);
     clusters.series_start_m = SERIES_START * size_m;
-    if (!l->shapes || !l->depth || !place_set(l) || !place_grid(&l->tiles, &tiles, l->threads) ||
-        !place_grid(&l->clusters, &clusters, l->threads)) {
+    if (!l->shapes || !l->depth || !place_set(l) ||
+        (blocked && lights->blockers.link_count > 0u && !place_blockers(l, &lights->blockers)) ||
+        !place_grid(l, &l->tiles, &tiles) || !place_grid(l, &l->clusters, &clusters)) {
         rd_lists_end(l);
         return false;
     }
@@ -88,17 +116,13 @@ bool rd_lists_begin(rd_lists* l, const rd_lights* lights, int width, int height,
     return true;
 }
 
-static void free_grid(rd_grid* g)
-{
-    free(g->memory);
-    free(g->scratch);
-}
-
 void rd_lists_end(rd_lists* l)
 {
     free(l->shapes);
     free(l->depth);
     free(l->set_memory);
+    free(l->blocker_memory);
+    free(l->blocker_scratch);
     free_grid(&l->tiles);
     free_grid(&l->clusters);
     memset(l, 0, sizeof *l);
@@ -184,8 +208,7 @@ static bool build_grid(const rd_sub_frame* s, rd_grid* g, const hdrp_cull_depth*
     while (ok && g->counts.dropped > 0u) {
         hdrp_cull_desc more = g->lists.desc;
         more.entry_capacity = room(l, &more, 2u * more.entry_capacity);
-        if (more.entry_capacity == g->lists.desc.entry_capacity ||
-            !place_grid(g, &more, l->threads)) {
+        if (more.entry_capacity == g->lists.desc.entry_capacity || !place_grid(l, g, &more)) {
             l->dropped += g->counts.dropped;
             l->full += g->counts.tiles_full;
             return true;
@@ -193,6 +216,52 @@ static bool build_grid(const rd_sub_frame* s, rd_grid* g, const hdrp_cull_depth*
         ok = measure(s, g, depth) && build(s, g, depth);
     }
     return ok;
+}
+
+/* Lights leave cells that blockers keep dark. */
+static bool apply_blockers(const rd_sub_frame* s, rd_grid* g)
+{
+    rd_lists* l = &s->r->lists;
+    size_t bytes = hdrp_cull_blocker_scratch_size(&l->blockers);
+    hdrp_u32x4 tiles = g->lists.grid.tiles;
+    int rows = (int)tiles.w, threads = (int)l->threads, failed = 0;
+#pragma omp parallel num_threads(threads) reduction(| : failed)
+    {
+        hdrp_cull_blocker_job job;
+        unsigned char* scratch =
+            (unsigned char*)l->blocker_scratch + (size_t)omp_get_thread_num() * bytes;
+        int ok = hdrp_cull_blocker_job_begin(&job, &l->blockers, scratch, bytes) == HDRP_OK;
+        failed |= !ok;
+#pragma omp for schedule(dynamic, 1)
+        for (int y = 0; y < rows; ++y) {
+            failed |= !ok || hdrp_cull_apply_blockers(&g->lists, &job, (uint32_t)y * tiles.z,
+                                                      tiles.z, g->masks) != HDRP_OK;
+        }
+#pragma omp critical(rd_blocked)
+        if (ok) {
+            l->blocked.whole += job.stats.whole;
+            l->blocked.pixel += job.stats.pixel;
+            l->blocked.lights += job.stats.lights;
+            l->blocked.lights_removed += job.stats.lights_removed;
+        }
+    }
+    return !failed;
+}
+
+static bool block(const rd_sub_frame* s)
+{
+    rd_lists* l = &s->r->lists;
+    uint32_t all = l->scene->light_count + l->scene->blocker_count;
+    if (hdrp_cull_blocker_begin(&l->blockers, l->scene, &l->set.camera) != HDRP_OK ||
+        hdrp_cull_blocker_project(&l->blockers, 0u, all) != HDRP_OK) {
+        return false;
+    }
+    if (!l->blocker_scratch) {
+        l->blocker_scratch = aligned_alloc(
+            HDRP_MEMORY_ALIGNMENT, hdrp_cull_blocker_scratch_size(&l->blockers) * l->threads);
+    }
+    memset(&l->blocked, 0, sizeof l->blocked);
+    return l->blocker_scratch && apply_blockers(s, &l->tiles) && apply_blockers(s, &l->clusters);
 }
 
 void rd_lists_build(const rd_sub_frame* s)
@@ -215,7 +284,11 @@ void rd_lists_build(const rd_sub_frame* s)
     }
     at = stage(s, "lists: tiles", at);
     l->ready = build_grid(s, &l->clusters, &depth);
-    stage(s, "lists: clusters", at);
+    at = stage(s, "lists: clusters", at);
+    if (l->ready && l->scene) {
+        l->ready = block(s);
+        stage(s, "lists: blockers", at);
+    }
 }
 
 /* >>reading */

@@ -282,6 +282,42 @@ static void count_lighting(app* a)
     }
 }
 
+static void count_lists(app* a)
+{
+    const rd_lists* l = &a->renderer.lists;
+    const rd_shade_counts* c = &a->renderer.counts.shade;
+    double samples = 0.0;
+    for (int i = 0; i < RD_SHADE_VARIANTS; ++i) {
+        samples += (double)c->samples[i];
+    }
+    if (samples > 0.0) {
+        rd_stats_list(&a->stats, "lights_visited",
+                      (double)(c->visited[0] + c->visited[1]) / samples);
+        rd_stats_list(&a->stats, "lights_in_range",
+                      (double)(c->in_range[0] + c->in_range[1]) / samples);
+    }
+    for (int i = 0; i < 2; ++i) {
+        if (c->in_range[i] > 0u) {
+            rd_stats_list(&a->stats, i ? "waste_of_clusters" : "waste_of_tiles",
+                          (double)c->visited[i] / (double)c->in_range[i]);
+        }
+    }
+    rd_stats_limit(&a->stats, "lights_without_lists", (double)l->left_out);
+    rd_stats_limit(&a->stats, "listed_lights_dropped", (double)l->dropped);
+    rd_stats_limit(&a->stats, "tiles_full", (double)l->full);
+    if (l->ready) {
+        rd_stats_list(&a->stats, "tile_entries", (double)l->tiles.counts.entries);
+        rd_stats_list(&a->stats, "tile_longest", (double)l->tiles.counts.longest);
+        rd_stats_list(&a->stats, "cluster_entries", (double)l->clusters.counts.entries);
+        rd_stats_list(&a->stats, "cluster_longest", (double)l->clusters.counts.longest);
+        if (l->scene) {
+            rd_stats_list(&a->stats, "blocked_lights", (double)l->blocked.lights_removed);
+            rd_stats_list(&a->stats, "blockers_by_pixel", (double)l->blocked.pixel);
+        }
+    }
+    rd_variants_count(&a->renderer.variants, &a->stats);
+}
+
 static bool finish(app* a)
 {
     const rd_render_counts* c = &a->renderer.counts;
@@ -294,6 +330,7 @@ static bool finish(app* a)
     rd_stats_count(&a->stats, "layer_hits", (double)c->layer_hits);
     rd_stats_limit(&a->stats, "transparent_layers_dropped", (double)c->layers_dropped);
     count_lighting(a);
+    count_lists(a);
     if (!compare(a)) {
         return false;
     }

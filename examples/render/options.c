@@ -34,6 +34,7 @@ static const struct {
     {"sky", RD_FEATURE_SKY},
     {"specular_aa", RD_FEATURE_SPECULAR_AA},
     {"lists", RD_FEATURE_LISTS},
+    {"blockers", RD_FEATURE_BLOCKERS},
     {"all", RD_FEATURE_ALL},
 };
 

@@ -54,7 +54,8 @@ bool rd_renderer_begin(rd_renderer* r, const rd_renderer_desc* d, rd_report* rep
     r->hits = (rd_hit*)allocate(pixels, sizeof *r->hits);
     r->film = (float*)allocate(pixels, 4 * sizeof *r->film);
     if (!r->hits || !r->film || !allocate_frame(r, pixels) ||
-        !rd_lists_begin(&r->lists, &r->lighting->lights, r->width, r->height, size_of(r->scene))) {
+        !rd_lists_begin(&r->lists, &r->lighting->lights, (o->features & RD_FEATURE_BLOCKERS) != 0,
+                        r->width, r->height, size_of(r->scene))) {
         rd_renderer_end(r);
         return rd_fail(report, "image", "out of memory");
     }
@@ -66,6 +67,7 @@ void rd_renderer_end(rd_renderer* r)
     rd_pyramid_end(&r->pyramid);
     rd_gbuffer_free(&r->gbuffer);
     rd_lists_end(&r->lists);
+    rd_variants_end(&r->variants);
     free(r->visibility[0]);
     free(r->visibility[1]);
     free(r->lit);
@@ -98,8 +100,10 @@ static void add_counts(rd_render_counts* sum, const rd_worker* w)
         sum->shade.timed_samples[i] += w->shade.timed_samples[i];
         sum->shade.timed_ms[i] += w->shade.timed_ms[i];
     }
-    sum->shade.visited += w->shade.visited;
-    sum->shade.in_range += w->shade.in_range;
+    for (int i = 0; i < 2; ++i) {
+        sum->shade.visited[i] += w->shade.visited[i];
+        sum->shade.in_range[i] += w->shade.in_range[i];
+    }
     sum->occlusion_rays += w->counts.occlusion_rays;
     sum->path_rays += w->counts.path_rays;
     sum->deferred_samples += w->counts.deferred_samples;
@@ -179,6 +183,18 @@ static void transparent(const rd_sub_frame* s, schedule* t)
     run_pass(s, "transparent surfaces", rd_layers_row, t);
 }
 
+static void lists(const rd_sub_frame* s, rd_view_stage stage)
+{
+    const rd_options* o = s->r->options;
+    if (stage != RD_STAGE_GBUFFER && rd_has(s, RD_FEATURE_LIGHTS) &&
+        (stage == RD_STAGE_LISTS || rd_has(s, RD_FEATURE_LISTS))) {
+        rd_lists_build(s);
+    }
+    if (o->view == RD_VIEW_VARIANTS || (o->stats && s->r->stats)) {
+        rd_variants_build(s);
+    }
+}
+
 /* The order of the talk: prepass and GBuffer, what lighting needs of it, deferred lighting, forward
  * opaque, then everything transparent. */
 static void real_time(const rd_sub_frame* s, schedule* t)
@@ -190,8 +206,10 @@ static void real_time(const rd_sub_frame* s, schedule* t)
         return;
     }
     run_pass(s, "GBuffer", rd_gbuffer_row, t);
-    if (rd_has(s, RD_FEATURE_LISTS) && rd_has(s, RD_FEATURE_LIGHTS)) {
-        rd_lists_build(s);
+    lists(s, stage);
+    if (stage == RD_STAGE_LISTS) {
+        run_pass(s, "view", rd_lists_view_row, t);
+        return;
     }
     occlusion(s, t);
     if (stage == RD_STAGE_GBUFFER) {
@@ -210,6 +228,8 @@ static int passes(const rd_renderer* r)
     switch (rd_view_stage_of(r->options->view)) {
     case RD_STAGE_MATERIAL:
         return 2;
+    case RD_STAGE_LISTS:
+        return 3;
     case RD_STAGE_GBUFFER:
         return 3 + 2 * occlusion_on;
     default:

@@ -12,6 +12,7 @@
 #include "scene.h"
 #include "stats.h"
 #include "trace.h"
+#include "variants.h"
 
 typedef struct rd_render_counts {
     uint64_t primary_rays, shadow_rays, occlusion_rays, path_rays;
@@ -36,6 +37,7 @@ typedef struct rd_renderer {
     rd_gbuffer gbuffer;
     float* visibility[2]; /* of the surroundings: as traced, and blurred */
     rd_lists lists;       /* of lights */
+    rd_variants variants;
     hdrp_v3* lit;         /* opaque surfaces and the sky [nits] */
     rd_pyramid pyramid;   /* of lit, for what is seen through rough glass */
     float* film;          /* RGBA; A is the coverage. Sums, and means once rd_render has returned */

@@ -1,5 +1,5 @@
 /* The light loop: every light and the sky on a run of points. */
-#include "lighting.h"
+#include "lists.h"
 
 #include <math.h>
 
@@ -94,7 +94,7 @@ const char* rd_shade_variant_name(int i)
 
 typedef struct run {
     const rd_lighting* lighting;
-    const hdrp_cull_lists* lists;
+    const rd_grid* grid;
     const rd_shade_point* points;
     uint32_t count, index;
     rd_shaded* out;
@@ -177,16 +177,29 @@ static bool is_lit(const rd_shade_point* p, const hdrp_light_incident* in)
            hdrp_v3_dot(p->data.coat_normal, in->l) > 0.0f;
 }
 
+static bool is_blocked(const run* r, uint32_t light, uint32_t mask, hdrp_v3 position)
+{
+    return r->lighting->features & RD_FEATURE_BLOCKERS && mask != 0u &&
+           hdrp_cull_blocker_light_visible(&r->lighting->lights.blockers, light, mask, position) ==
+               0.0f;
+}
+
+/* What may keep a light from all points. */
+#define ALL_BLOCKERS UINT32_MAX
+
 /* Appends those of some points. */
-static void find_reached(const run* r, uint32_t light, uint32_t first, uint32_t end, reached* out)
+static void find_reached(const run* r, uint32_t light, uint32_t mask, uint32_t first, uint32_t end,
+                         reached* out)
 {
     const hdrp_light* item = &r->lighting->lights.items[light];
+    int kind = r->grid && r->grid->lists.desc.slice_count > 1u;
     for (uint32_t i = first; i < end; ++i) {
         const rd_shade_point* p = &r->points[i];
         hdrp_light_incident in = hdrp_light_eval(*item, p->position);
         bool in_range = hdrp_v3_max_component(in.illuminance) > 0.0f;
-        r->counts->in_range += in_range;
-        if (in_range && hdrp_light_affects(*item, p->layers) && is_lit(p, &in)) {
+        r->counts->in_range[kind] += in_range;
+        if (in_range && hdrp_light_affects(*item, p->layers) && is_lit(p, &in) &&
+            !is_blocked(r, light, mask, p->position)) {
             float sine = rd_light_sine(item, &in);
             out->point[out->count] = i;
             out->incident[out->count] = in;
@@ -195,7 +208,7 @@ static void find_reached(const run* r, uint32_t light, uint32_t first, uint32_t 
             ++out->count;
         }
     }
-    r->counts->visited += end - first;
+    r->counts->visited[kind] += end - first;
 }
 
 static void trace_shadows(const run* r, uint32_t light, reached* l)
@@ -235,7 +248,7 @@ static void add_all_lights(const run* r)
         if (!rd_light_misses(&lights->items[i], &bounds)) {
             reached l;
             l.count = 0;
-            find_reached(r, i, 0, r->count, &l);
+            find_reached(r, i, ALL_BLOCKERS, 0, r->count, &l);
             add_light(r, i, &l);
         }
     }
@@ -249,7 +262,7 @@ typedef struct cursor {
 
 static bool shares_entries(const run* r, const rd_shade_point* a, const rd_shade_point* b)
 {
-    hdrp_u32x4 block = r->lists->grid.cells;
+    hdrp_u32x4 block = r->grid->lists.grid.cells;
     return a->first_entry == b->first_entry && a->last_entry == b->last_entry &&
            a->x / block.z == b->x / block.z && a->y / block.w == b->y / block.w;
 }
@@ -274,7 +287,19 @@ static uint32_t make_cursors(const run* r, cursor* cursors)
 
 static uint32_t next_light(const run* r, const cursor* c)
 {
-    return c->entry < c->last_entry ? hdrp_cull_entry_index(r->lists->entries[c->entry]) : NO_LIGHT;
+    return c->entry < c->last_entry ? hdrp_cull_entry_index(r->grid->lists.entries[c->entry])
+                                    : NO_LIGHT;
+}
+
+/* Takes the next entry. */
+static void visit(const run* r, cursor* c, uint32_t light, reached* out)
+{
+    const rd_shade_point* p = &r->points[c->first_point];
+    uint32_t entry = c->entry++;
+    uint32_t mask = r->grid->masks ? r->grid->masks[entry] : ALL_BLOCKERS;
+    if (hdrp_cull_entry_covers(r->grid->lists.grid, r->grid->lists.entries[entry], p->x, p->y)) {
+        find_reached(r, light, mask, c->first_point, c->end_point, out);
+    }
 }
 
 /* Lists are in the order of the lights: merged, they give that of the loop over all of them. */
@@ -294,13 +319,8 @@ static void add_listed_lights(const run* r)
         }
         l.count = 0;
         for (uint32_t i = 0; i < n; ++i) {
-            cursor* c = &cursors[i];
-            if (next_light(r, c) == light) {
-                const rd_shade_point* p = &r->points[c->first_point];
-                if (hdrp_cull_entry_covers(r->lists->grid, r->lists->entries[c->entry++], p->x,
-                                           p->y)) {
-                    find_reached(r, light, c->first_point, c->end_point, &l);
-                }
+            if (next_light(r, &cursors[i]) == light) {
+                visit(r, &cursors[i], light, &l);
             }
         }
         add_light(r, light, &l);
@@ -368,7 +388,7 @@ static void count(const run* r, double ms)
     }
 }
 
-void rd_shade(const rd_lighting* l, const hdrp_cull_lists* lists, const rd_shade_point* points,
+void rd_shade(const rd_lighting* l, const rd_grid* grid, const rd_shade_point* points,
               uint32_t point_count, uint32_t index, rd_shaded* out, rd_shade_counts* counts)
 {
     run r;
@@ -377,7 +397,7 @@ void rd_shade(const rd_lighting* l, const hdrp_cull_lists* lists, const rd_shade
         return;
     }
     r.lighting = l;
-    r.lists = lists;
+    r.grid = grid;
     r.points = points;
     r.count = point_count;
     r.index = index;
@@ -385,7 +405,7 @@ void rd_shade(const rd_lighting* l, const hdrp_cull_lists* lists, const rd_shade
     r.counts = counts;
     begin(&r);
     if (l->features & RD_FEATURE_LIGHTS) {
-        (lists ? add_listed_lights : add_all_lights)(&r);
+        (grid ? add_listed_lights : add_all_lights)(&r);
     }
     add_environment(&r);
     count(&r, rd_now_ms() - start);

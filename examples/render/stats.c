@@ -62,6 +62,31 @@ void rd_stats_lit(rd_stats* s, const char* material, double samples, double ns_e
     add(s->lit_ns, &s->lit_ns_count, material, ns_each);
 }
 
+void rd_stats_list(rd_stats* s, const char* name, double value)
+{
+    add(s->lists, &s->list_count, name, value);
+}
+
+void rd_stats_variant(rd_stats* s, const char* features, double tiles, double cycles_each)
+{
+    add(s->variants, &s->variant_count, features, tiles);
+    add(s->variant_cycles, &s->variant_cycles_count, features, cycles_each);
+}
+
+static void print_lists(const rd_stats* s)
+{
+    for (int i = 0; i < s->list_count; ++i) {
+        printf("%-24s %10.6g\n", s->lists[i].name, s->lists[i].value);
+    }
+    if (s->variant_count > 0) {
+        printf("%10s %10s  %s\n", "tiles", "cycles", "variant");
+    }
+    for (int i = 0; i < s->variant_count; ++i) {
+        printf("%10.0f %10.0f  %s\n", s->variants[i].value, s->variant_cycles[i].value,
+               s->variants[i].name);
+    }
+}
+
 static void print_lit(const rd_stats* s)
 {
     if (s->lit_count > 0) {
@@ -90,6 +115,7 @@ void rd_stats_print(const rd_stats* s)
     printf("%-24s %10.1f %6.1f\n", "other", other, 100.0 * other / total);
     printf("%-24s %10.1f\n", "total", total);
     print_lit(s);
+    print_lists(s);
     for (int i = 0; i < s->limit_count; ++i) {
         if (s->limits[i].value > 0) {
             printf("limit hit: %s: %.0f\n", s->limits[i].name, s->limits[i].value);
@@ -152,6 +178,9 @@ static bool write_all(const rd_stats* s, FILE* f)
     write_object(f, "errors", s->errors, s->error_count);
     write_object(f, "lit_samples", s->lit, s->lit_count);
     write_object(f, "lit_ns", s->lit_ns, s->lit_ns_count);
+    write_object(f, "lists", s->lists, s->list_count);
+    write_object(f, "variant_tiles", s->variants, s->variant_count);
+    write_object(f, "variant_cycles", s->variant_cycles, s->variant_cycles_count);
     fputs("\n}\n", f);
     return !ferror(f);
 }

@@ -38,6 +38,11 @@ static const struct {
     [RD_VIEW_RT2] = {"rt2", RD_ENCODE_DATA, RD_STAGE_GBUFFER},
     [RD_VIEW_RT3] = {"rt3", RD_ENCODE_COLOR, RD_STAGE_GBUFFER},
     [RD_VIEW_RT4] = {"rt4", RD_ENCODE_DATA, RD_STAGE_GBUFFER},
+    [RD_VIEW_TILES] = {"tiles", RD_ENCODE_COLOR, RD_STAGE_LISTS},
+    [RD_VIEW_CLUSTERS] = {"clusters", RD_ENCODE_COLOR, RD_STAGE_LISTS},
+    [RD_VIEW_LIGHT_WASTE] = {"light_waste", RD_ENCODE_COLOR, RD_STAGE_LISTS},
+    [RD_VIEW_VARIANTS] = {"variants", RD_ENCODE_COLOR, RD_STAGE_LISTS},
+    [RD_VIEW_BLOCKERS] = {"blockers", RD_ENCODE_COLOR, RD_STAGE_LISTS},
 };
 
 const char* rd_view_name(rd_view view)

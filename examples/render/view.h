@@ -35,6 +35,11 @@ typedef enum rd_view {
     RD_VIEW_RT2,
     RD_VIEW_RT3,
     RD_VIEW_RT4,
+    RD_VIEW_TILES,
+    RD_VIEW_CLUSTERS,
+    RD_VIEW_LIGHT_WASTE,
+    RD_VIEW_VARIANTS,
+    RD_VIEW_BLOCKERS,
     RD_VIEW_COUNT
 } rd_view;
 
@@ -51,6 +56,7 @@ typedef enum rd_encoding {
 typedef enum rd_view_stage {
     RD_STAGE_MATERIAL, /* from the surfaces, transparent ones included */
     RD_STAGE_GBUFFER,  /* before lighting */
+    RD_STAGE_LISTS,    /* the same, of lists of lights */
     RD_STAGE_LIGHTING  /* all passes run */
 } rd_view_stage;
 
