@@ -1,9 +1,10 @@
 # Front door. CMake does the work; each task has a build folder of its own under build/.
 .DEFAULT_GOAL := build
-.PHONY: build demo test check-all exhaustive bench tradeoffs mutation dist clean help
+.PHONY: build demo test check-all exhaustive bench tradeoffs mutation fuzz dist clean help
 
 JOBS ?= 2
 DEMO_ARGS ?=
+FUZZ_SECONDS ?= 120
 ASSETS ?= $(or $(HDRP_TEST_ASSETS),../shared/assets)
 
 configure = cmake -S . -B build/$(1) -G Ninja $(2) >build/$(1).log 2>&1 || \
@@ -55,6 +56,15 @@ mutation: ## make constants and operators wrong, one by one, and count what the 
 	@tools/install-deps test
 	@$(call configure,test,-DCMAKE_BUILD_TYPE=Release)
 	@$(call compile,test) --target mutation
+
+# What it finds lies in build/fuzz; FUZZ_CULL_PRINT=1 prints what an input stands for.
+fuzz: ## cull what random bytes describe, under sanitizers, for FUZZ_SECONDS
+	@mkdir -p build/fuzz/corpus
+	@tools/install-deps test
+	@$(call configure,test,-DCMAKE_BUILD_TYPE=Release)
+	@$(call compile,test) --target fuzz_build
+	@build/test/tests/fuzz/fuzz_cull -max_total_time=$(FUZZ_SECONDS) -max_len=1024 -len_control=0 \
+	    -timeout=10 -artifact_prefix=build/fuzz/ -print_final_stats=1 build/fuzz/corpus
 
 bench: ## time the formulas beside other libraries, and light culling; results go to bench/results
 	@mkdir -p build
