@@ -124,8 +124,9 @@ static void build(grid* g, const world* w, hdrp_cull_desc desc, bool with_depth)
     g->blocks[2] = block(bytes);
     assert_int_equal(hdrp_cull_blocker_init(&g->blockers, &limits, g->blocks[2], bytes), HDRP_OK);
     assert_int_equal(hdrp_cull_blocker_begin(&g->blockers, &w->scene, &w->camera), HDRP_OK);
-    assert_int_equal(hdrp_cull_blocker_project(&g->blockers, 0, LIGHTS + w->scene.blocker_count),
-                     HDRP_OK);
+    assert_int_equal(
+        hdrp_cull_blocker_project(&g->blockers, 0, w->scene.light_count + w->scene.blocker_count),
+        HDRP_OK);
     assert_int_equal(hdrp_cull_set_begin(&g->set, &w->camera, WIDTH, HEIGHT, SHAPES), HDRP_OK);
     assert_int_equal(hdrp_cull_set_project(&g->set, w->shapes, 0, SHAPES), HDRP_OK);
     assert_int_equal(hdrp_cull_begin(&g->lists, &g->set), HDRP_OK);
@@ -296,6 +297,51 @@ static void what_stays_keeps_its_order_and_its_category(void** state)
     drop(&g);
 }
 
+/* All that is farther than d is behind a clip plane. */
+static void cells_before_and_behind_a_clip_plane_need_no_test(void** state)
+{
+    (void)state;
+    static world w;
+    static grid g;
+    uint64_t seed = 5, listed = 0;
+    for (int i = 0; i < 60; ++i) {
+        hdrp_cull_desc desc = {0};
+        desc.slice_count = 48u;
+        desc.flags = i % 2 ? HDRP_CULL_ONE_SERIES : 0u;
+        make_world(&w, &seed, i % 3 == 0);
+        float d = (float)test_log(&seed, 0.2, 60.0);
+        test_v3 ahead = test_of(w.camera.forward_orthographic);
+        test_v3 p = test_mad(test_of(w.camera.eye_near), ahead, (double)d);
+        w.blockers[0] = hdrp_cull_blocker_plane(
+            test_float(p), test_float(test_mad(test_vec(0, 0, 0), ahead, -1.0)));
+        w.links[0] = 0u;
+        w.lights[0].first = 0u;
+        w.lights[0].count = 1u;
+        w.scene.light_count = w.scene.link_count = w.scene.blocker_count = 1u;
+        build(&g, &w, desc, i % 2 == 0);
+        apply(&g, 1);
+        for (size_t at = 0; at < g.cells; ++at) {
+            float scale = g.lists.tiles[at / 48u].z;
+            uint32_t k = (uint32_t)(at % 48u);
+            int after = find(g.lists.entries, g.lists.cells[at], 0u);
+            if (find(g.old_entries, g.old_cells[at], 0u) < 0) {
+                assert_true(after < 0); /* beyond the far distance */
+                continue;
+            }
+            ++listed;
+            if (k < hdrp_cull_slice(g.lists.grid, scale, d * (1.0f - 1e-4f))) {
+                assert_true(after >= 0 && g.masks[after] == 0u);
+            } else if (k > hdrp_cull_slice(g.lists.grid, scale, d * (1.0f + 1e-4f))) {
+                assert_true(after < 0);
+            } else if (k == hdrp_cull_slice(g.lists.grid, scale, d)) {
+                assert_true(after >= 0 && g.masks[after] == 1u);
+            }
+        }
+        drop(&g);
+    }
+    assert_true(listed > 10000u);
+}
+
 static void any_split_into_jobs_gives_the_same_bits(void** state)
 {
     (void)state;
@@ -359,6 +405,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lists_and_masks_decide_as_all_blockers_do),
         cmocka_unit_test(what_stays_keeps_its_order_and_its_category),
+        cmocka_unit_test(cells_before_and_behind_a_clip_plane_need_no_test),
         cmocka_unit_test(any_split_into_jobs_gives_the_same_bits),
         cmocka_unit_test(bad_arguments_leave_lists_alone),
     };
