@@ -177,16 +177,16 @@ static void pixels_find_their_tile_and_cell(void** state)
 
 static void cells_know_their_categories(void** state)
 {
-    hdrp_u32x4 cell = hdrp_u32x4_make(1000u, 3u | 65535u << 16, 0u | 7u << 16, 2u);
+    hdrp_u32x4 cell = hdrp_u32x4_make(1000u, 3u | 65535u << 16, 5u | 7u << 16, 2u);
     (void)state;
     assert_int_equal(hdrp_cull_first(cell, HDRP_CULL_CATEGORY_PUNCTUAL), 1000);
     assert_int_equal(hdrp_cull_last(cell, HDRP_CULL_CATEGORY_PUNCTUAL), 1003);
     assert_int_equal(hdrp_cull_first(cell, HDRP_CULL_CATEGORY_AREA), 1003);
     assert_int_equal(hdrp_cull_last(cell, HDRP_CULL_CATEGORY_AREA), 1003 + 65535);
     assert_int_equal(hdrp_cull_first(cell, HDRP_CULL_CATEGORY_ENVIRONMENT), 1003 + 65535);
-    assert_int_equal(hdrp_cull_last(cell, HDRP_CULL_CATEGORY_ENVIRONMENT), 1003 + 65535);
-    assert_int_equal(hdrp_cull_first(cell, HDRP_CULL_CATEGORY_DECAL), 1003 + 65535);
-    assert_int_equal(hdrp_cull_last(cell, HDRP_CULL_CATEGORY_DECAL), 1003 + 65535 + 7);
+    assert_int_equal(hdrp_cull_last(cell, HDRP_CULL_CATEGORY_ENVIRONMENT), 1008 + 65535);
+    assert_int_equal(hdrp_cull_first(cell, HDRP_CULL_CATEGORY_DECAL), 1008 + 65535);
+    assert_int_equal(hdrp_cull_last(cell, HDRP_CULL_CATEGORY_DECAL), 1008 + 65535 + 7);
 }
 
 static void entries_hold_an_index_and_blocks(void** state)

@@ -47,6 +47,9 @@ static void an_infinite_projection_ends_nowhere(void** state)
         assert_true(hdrp_view_depth(p, 1e-30f) == HDRP_DEPTH_INFINITE);
         assert_true(within(hdrp_view_depth(p, 1e-10f), 5e9, 2e-7));
         assert_true(within(hdrp_device_depth(p, 5e9f), 1e-10, 2e-7));
+        assert_true(within(hdrp_device_depth(p, 1e30f), 5e-19, 2e-7));
+        assert_true(within(hdrp_device_depth(p, (float)INFINITY), 5e-19, 2e-7));
+        assert_true(within(hdrp_device_depth(p, (float)NAN), 5e-19, 2e-7));
         p = hdrp_depth_params_perspective(0.5f, far_m[i], 0u);
         assert_true(hdrp_view_depth(p, 1.0f) == HDRP_DEPTH_INFINITE);
         assert_true(hdrp_view_depth(p, 0.0f) == 0.5f);
