@@ -171,9 +171,12 @@ static double mean_cost(const hdrp_cull_variant_list* list, const hdrp_cull_hist
 
 static void compare(rd_variants* v, const hdrp_cull_histogram* h, uint32_t worst)
 {
+    uint32_t everything = MATERIALS | ANY_LIGHT;
+    hdrp_cull_variant_list all = {&everything, NULL, 1u};
     hdrp_cull_variant_list one = {&worst, NULL, 1u};
     hdrp_cull_variant_list hand = {by_hand, NULL, RD_VARIANT_LIMIT};
     hdrp_cull_variant_list chosen = {v->choice.masks, v->choice.costs, v->choice.variant_count};
+    v->mean_everything = mean_cost(&all, h, NULL);
     v->mean_one = mean_cost(&one, h, NULL);
     v->mean_by_hand = mean_cost(&hand, h, NULL);
     v->mean_chosen = mean_cost(&chosen, h, v->reports);
@@ -271,6 +274,7 @@ void rd_variants_count(const rd_variants* v, rd_stats* stats)
     for (uint32_t i = 0; i < v->choice.variant_count; ++i) {
         rd_stats_variant(stats, v->names[i], (double)v->reports[i].weight, v->reports[i].cost);
     }
+    rd_stats_list(stats, "tile_cost_everything", v->mean_everything);
     rd_stats_list(stats, "tile_cost_one_variant", v->mean_one);
     rd_stats_list(stats, "tile_cost_by_hand", v->mean_by_hand);
     rd_stats_list(stats, "tile_cost_chosen", v->mean_chosen);

@@ -16,7 +16,9 @@ typedef struct rd_variants {
     hdrp_cull_choice choice; /* from the tiles of the first sub-frame */
     uint32_t* words;         /* of each tile: what its materials and lights need */
     uint8_t* tiles;          /* the variant of each */
-    double mean_one, mean_by_hand, mean_chosen, mean_bound; /* cost of a tile */
+    /* Cost of a tile: in a variant of everything there is, in one of what the scene has, by a list
+     * made by hand, and by the choice, with its bound. */
+    double mean_everything, mean_one, mean_by_hand, mean_chosen, mean_bound;
     hdrp_cull_variant_report reports[RD_VARIANT_LIMIT];
     char names[RD_VARIANT_LIMIT][RD_VARIANT_NAME_MAX];
 } rd_variants;

@@ -23,6 +23,8 @@ WRONG = [
     (["--quality", "best"], "--quality"),
     (["--path", "tiled"], "--path"),
     (["--view", "everything"], "--view"),
+    (["--scene", "moon"], "--scene"),
+    (["--scene", "lights", "a.glb"], "--scene"),
     (["--features", "clear_coat,moonlight"], "--features"),
     (["--features", "-"], "--features"),
     (["--exposure", "nan"], "--exposure"),
