@@ -91,8 +91,8 @@ typedef struct rd_shade_counts {
 
 const char* rd_shade_variant_name(int variant);
 
-/* At most RD_SHADE_MAX points. `grid`, of lists.h, has the entries of the points; NULL: they visit all
- * lights. `index` counts the samples of a pixel. */
+/* At most RD_SHADE_MAX points. `grid`, of lists.h, has the entries of the points; NULL: they visit
+ * all lights. `index` counts the samples of a pixel. */
 struct rd_grid;
 void rd_shade(const rd_lighting* l, const struct rd_grid* grid, const rd_shade_point* points,
               uint32_t count, uint32_t index, rd_shaded* out, rd_shade_counts* counts);

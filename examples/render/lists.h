@@ -1,4 +1,4 @@
-/* Which lights reach what is seen: lists by tiles for opaque surfaces, by clusters for the others. */
+/* Which lights reach what is seen: lists by tiles for opaque surfaces, by clusters for others. */
 #ifndef RD_LISTS_H
 #define RD_LISTS_H
 
