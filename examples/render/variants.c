@@ -26,11 +26,11 @@ static const char* const names[] = {"lit",   "coat",     "anisotropy", "iridesce
                                     "spots", "pyramids", "boxes",      "blockers"};
 
 /* What a GCN GPU makes of hdrp_brdf_lit_*, bonaire in bench/results/gcn_mesa-22.3.6.csv: four
- * cycles for each instruction of a material and eight lights; the rest of the driver's estimate for one
- * wave alone is waiting, a tenth of it where ten waves take turns. Registers are those of the rows
- * of `lit`; those of a film, which only making the view needs, and of a type of light, which only
- * its own evaluation needs, are peaks. A type of light that a tile has not costs its branch in each
- * turn; blockers are an estimate. */
+ * cycles for each instruction of a material and eight lights; the rest of the driver's estimate for
+ * one wave alone is waiting, a tenth of it where ten waves take turns. Registers are those of the
+ * rows of `lit`; those of a film, which only making the view needs, and of a type of light, which
+ * only its own evaluation needs, are peaks. A type of light that a tile has not costs its branch in
+ * each turn; blockers are an estimate. */
 static const hdrp_cull_cost_model costs = {
     .alu = 5304.0,
     .latency = 303.0,
