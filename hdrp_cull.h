@@ -1803,6 +1803,13 @@ static void hdrp_i_cull_count_slices(const hdrp_i_cull_job* job, uint64_t* count
     }
 }
 
+/* Of a word of four counts: the highest part of the product is their sum. Shading languages, which
+ * look at what they skip, know no number as long as the factor. */
+static uint32_t hdrp_i_cull_sum_of_four(uint64_t counts)
+{
+    return (uint32_t)(counts * ((uint64_t)0x00010001u << 32 | 0x00010001u) >> 48);
+}
+
 /* Writes the cells and the entries of a tile. */
 static void hdrp_i_cull_write(hdrp_i_cull_job* job, uint32_t tile, uint32_t dropped)
 {
@@ -1816,12 +1823,10 @@ static void hdrp_i_cull_write(hdrp_i_cull_job* job, uint32_t tile, uint32_t drop
     for (k = 0u; k < slices; ++k) {
         cells[k] = hdrp_u32x4_make(at, (uint32_t)counts[k], (uint32_t)(counts[k] >> 32), dropped);
         next[k] = at;
-        /* The highest part of the product is the sum of the four. */
-        at += (uint32_t)(counts[k] * 0x0001000100010001u >> 48);
+        at += hdrp_i_cull_sum_of_four(counts[k]);
     }
     for (h = 0u; h < job->hit_count; ++h) {
-        uint32_t entry = (uint32_t)job->s.candidate[job->s.hit[h]] | (uint32_t)job->s.blocks[h]
-                                                                         << 16;
+        uint32_t entry = (uint32_t)job->s.hit[h] | (uint32_t)job->s.blocks[h] << 16;
         uint32_t last = job->s.hit_last[h];
         for (k = job->s.hit_first[h]; k <= last; ++k) {
             entries[next[k]++] = entry;
@@ -1990,7 +1995,7 @@ HDRP_API hdrp_result hdrp_cull_masks(const hdrp_cull_lists* lists, uint32_t firs
     first = (size_t)first_tile * lists->desc.slice_count;
     cells = (size_t)tile_count * lists->desc.slice_count;
     for (writing = 0; writing < 2; ++writing) {
-        if (writing) {
+        if (writing && cells > 0u) {
             memset(words, 0, cells * stride * sizeof *words);
         }
         for (c = 0u; c < cells; ++c) {

@@ -229,6 +229,10 @@ HDRP_FN hdrp_v3 hdrp_cull_view_from_world(hdrp_v3 position, hdrp_cull_camera cam
 #define HDRP_CULL_KIND_FRONT   5u /* the same, in front of its centre */
 #define HDRP_CULL_KIND_MASK    255u
 
+/* A bit beside the kind: the centre lies half the depth ahead of the position that is given. Added
+ * in view space, where nothing is lost that far from the origin of the world has no digits. */
+#define HDRP_CULL_SHAPE_AHEAD 65536u
+
 /* What lists are grouped by, in this order. */
 #define HDRP_CULL_CATEGORY_PUNCTUAL    0u
 #define HDRP_CULL_CATEGORY_AREA        1u
@@ -243,7 +247,7 @@ struct hdrp_cull_shape {
     hdrp_v4 up_half;      /* xyz unit, w [0,1e18] m */
     hdrp_v4 forward_half; /* xyz unit, w [0,1e18] m */
     hdrp_v4 half_angle;   /* [-1,1] cos and sin across right, then across up */
-    hdrp_u32x4 bits;      /* x kind | category << 8, y layers, z features, w importance: a float */
+    hdrp_u32x4 bits; /* x kind | category << 8 | ..._AHEAD, y layers, z features, w importance */
 };
 HDRP_TYPEDEF(hdrp_cull_shape)
 
@@ -371,9 +375,9 @@ HDRP_FN hdrp_cull_shape hdrp_cull_shape_from_light(hdrp_light light)
     s.forward_half = hdrp_v4_from_v3(hdrp_v3_from_v4(light.forward_radius), 0.0f);
     s.half_angle = light.half_angle;
     if (type == HDRP_LIGHT_TYPE_BOX) {
-        hdrp_v3 f = hdrp_v3_from_v4(light.forward_radius);
-        s.center_range = hdrp_v4_from_v3(hdrp_i_cull_mad(p, f, 0.5f * range), 0.0f);
+        s.center_range.w = 0.0f;
         s.forward_half.w = 0.5f * range;
+        s.bits.x |= HDRP_CULL_SHAPE_AHEAD;
     }
     if (type == HDRP_LIGHT_TYPE_SPHERE) {
         s.center_range.w = hdrp_min(range + light.forward_radius.w, HDRP_LIGHT_RANGE_INFINITE);
@@ -446,6 +450,10 @@ HDRP_FN hdrp_cull_shape hdrp_cull_shape_in_view(hdrp_cull_shape shape, hdrp_cull
     shape.right_half = hdrp_i_cull_axis_in_view(shape.right_half, camera);
     shape.up_half = hdrp_i_cull_axis_in_view(shape.up_half, camera);
     shape.forward_half = hdrp_i_cull_axis_in_view(shape.forward_half, camera);
+    if ((shape.bits.x & HDRP_CULL_SHAPE_AHEAD) != 0u) {
+        c = hdrp_i_cull_mad(c, hdrp_v3_from_v4(shape.forward_half), shape.forward_half.w);
+        shape.bits.x &= ~HDRP_CULL_SHAPE_AHEAD;
+    }
     shape.center_range = hdrp_v4_from_v3(c, range);
     if (everywhere > 0.0f && kind != HDRP_CULL_KIND_NONE) {
         shape.center_range = hdrp_v4_make(0.0f, 0.0f, 0.0f, HDRP_LIGHT_RANGE_INFINITE);
@@ -803,6 +811,7 @@ HDRP_FN float hdrp_cull_shape_contains(hdrp_cull_shape shape, hdrp_v3 position)
         inside = z >= -margin ? 1.0f : 0.0f;
     }
     if (kind >= HDRP_CULL_KIND_BOX) {
+        range += HDRP_CULL_MARGIN * (shape.right_half.w + shape.up_half.w + shape.forward_half.w);
         d = hdrp_v3_make(hdrp_max(x - shape.right_half.w, 0.0f),
                          hdrp_max(y - shape.up_half.w, 0.0f),
                          hdrp_max(hdrp_abs(z) - shape.forward_half.w, 0.0f));

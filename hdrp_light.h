@@ -1076,8 +1076,8 @@ HDRP_FN hdrp_u32 hdrp_light_affects(hdrp_light light, hdrp_u32 layers)
  *  error    none: a selection of bits
  *  source   Kircher 2018, "Rendering Technology in Agents of Mayhem", slides on lighting compute
  *  note     the sum over all lights may be negative: limit it to 0, after the last light and before
- *           exposure. Limits within the sum would make it depend on the order of the lights. Culling
- *           and attenuation are those of any light, and a colour stays positive */
+ *           exposure. Limits within the sum would make it depend on the order of the lights.
+ *           Culling and attenuation are those of any light, and a colour stays positive */
 HDRP_FN float hdrp_light_sign(hdrp_light light)
 {
     return (light.bits.x & HDRP_LIGHT_FEATURE_NEGATIVE) != 0u ? -1.0f : 1.0f;
@@ -1106,6 +1106,8 @@ HDRP_FN hdrp_light hdrp_i_light_make(hdrp_u32 type, hdrp_v3 position, hdrp_v3 fo
         x = basis.tangent;
     }
     x = hdrp_v3_normalize(x);
+    /* Where up is nearly along f, rounding leaves x askew: by up to 4e-5. */
+    x = hdrp_v3_normalize(hdrp_v3_mad(x, f, -hdrp_v3_dot(x, f)));
     if (usable < 1.0f) {
         position = hdrp_v3_splat(0.0f);
     }

@@ -114,8 +114,12 @@ static void area_lights_reach_their_range_from_their_surface(void** state)
         hdrp_light_box(v3(0, 0, 0), v3(0, 0, 1), v3(0, 1, 0), v3(1, 1, 1), 2.0f, 3.0f, 10.0f, 0.1f);
     hdrp_cull_shape s = hdrp_cull_shape_from_light(light);
     (void)state;
-    /* The box of a projector begins at its position. */
-    assert_true(s.center_range.z == 5.0f && s.center_range.w == 0.0f && s.forward_half.w == 5.0f);
+    /* The box of a projector begins at its position, in view space. */
+    hdrp_cull_camera eye =
+        hdrp_cull_camera_orthographic(v3(0, 0, 0), v3(0, 0, 1), v3(0, 1, 0), -1, 1, -1, 1, 1, 2);
+    hdrp_cull_shape seen = hdrp_cull_shape_in_view(s, eye);
+    assert_true(seen.center_range.z == 5.0f && seen.center_range.w == 0.0f &&
+                seen.forward_half.w == 5.0f);
     assert_true(s.right_half.w == 2.0f && s.up_half.w == 3.0f);
     light.forward_radius.w = 0.5f;
     s = hdrp_cull_shape_from_light(of_type(light, HDRP_LIGHT_TYPE_SPHERE));
