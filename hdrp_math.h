@@ -220,7 +220,7 @@ HDRP_FN float hdrp_cos(float x)
  *  x        finite  [rad]
  *  returns  finite
  *  edges    infinities and NaN give NaN
- *  error    <= 1.4 ulp  @accuracy tan
+ *  error    <= 1.5 ulp  @accuracy tan
  *  source   the built-in of the language */
 HDRP_FN float hdrp_tan(float x)
 {
@@ -243,7 +243,7 @@ HDRP_FN float hdrp_asin(float x)
  *  returns  [0,HDRP_PI]  [rad]
  *  edges    outside and NaN give NaN
  *  error    <= 1 ulp  @accuracy acos
- *  error    <= 2.1e-7 absolute  @accuracy acos_absolute
+ *  error    <= 2.2e-7 absolute  @accuracy acos_absolute
  *  source   the built-in of the language */
 HDRP_FN float hdrp_acos(float x)
 {

@@ -14,6 +14,7 @@ static double brdf_ior_from_fresnel0_error(double x, const float* y)
     double r = (EX_Y(0) - 1.0) / (EX_Y(0) + 1.0);
     return ex_absolute(r * r, x);
 }
+EX_ERRORS(brdf_ior_from_fresnel0)
 
 /* From air to the IOR of the F0, and from the coat to that. */
 static double under_coat(double f0)
@@ -29,7 +30,7 @@ EX_ERROR(brdf_fresnel0_under_coat_fast_upper, ex_absolute(EX_Y(0), under_coat(x)
 
 EX_VALUES(brdf_alpha_from_perceptual_roughness, hdrp_brdf_alpha_from_perceptual_roughness)
 EX_ERROR(brdf_alpha_from_perceptual_roughness,
-         ex_relative(EX_Y(0), fmax(x* x, (double)HDRP_ALPHA_MIN)))
+         ex_relative(EX_Y(0), ex_larger(x* x, (double)HDRP_ALPHA_MIN)))
 
 /* Its error is a claim of hdrp_brdf_fgd_fast; here only that the coefficients are finite. */
 static void brdf_fgd_fit_values(const float* restrict x, float* restrict y, int n)
@@ -47,14 +48,14 @@ EX_VALUES(brdf_variance_from_average_normal, hdrp_brdf_variance_from_average_nor
 
 const ex_sweep ex_sweeps_brdf[] = {
     EX_SWEEP(hdrp_brdf_schlick_weight, brdf_schlick_weight,
-             EX_CLAIM(brdf_schlick_weight, 0.0f, 0.99999994f, 1u)),
+             EX_CLAIM(brdf_schlick_weight, 0.0f, 0.99999994f)),
     EX_SWEEP(hdrp_brdf_ior_from_fresnel0, brdf_ior_from_fresnel0,
-             EX_CLAIM(brdf_ior_from_fresnel0, 0.0f, 1.0f, 1u)),
+             EX_CLAIM(brdf_ior_from_fresnel0, 0.0f, 1.0f)),
     EX_SWEEP(hdrp_brdf_fresnel0_under_coat_fast, brdf_fresnel0_under_coat_fast,
-             EX_CLAIM(brdf_fresnel0_under_coat_fast, 0.0f, 1.0f, 1u),
-             EX_CLAIM(brdf_fresnel0_under_coat_fast_upper, 0.04f, 1.0f, 1u)),
+             EX_CLAIM(brdf_fresnel0_under_coat_fast, 0.0f, 1.0f),
+             EX_CLAIM(brdf_fresnel0_under_coat_fast_upper, 0.04f, 1.0f)),
     EX_SWEEP(hdrp_brdf_alpha_from_perceptual_roughness, brdf_alpha_from_perceptual_roughness,
-             EX_CLAIM(brdf_alpha_from_perceptual_roughness, 0.0f, 1.0f, 1u)),
+             EX_CLAIM(brdf_alpha_from_perceptual_roughness, 0.0f, 1.0f)),
     {"hdrp_brdf_fgd_fit_make", "", 3, brdf_fgd_fit_values, {EX_NO_CLAIM}},
     EX_SWEEP(hdrp_brdf_variance_from_average_normal, brdf_variance_from_average_normal,
              EX_NO_CLAIM),

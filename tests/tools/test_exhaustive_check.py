@@ -11,7 +11,7 @@ HEAD = ("name,domain,count,worst_error,worst_input,mean,unit,non_finite,non_fini
         "claim\n")
 SUBSET = HEAD + ("hdrp_a,0 to 1,100,0.0019,0.5,0.001,relative,0,0,a,0.002\n"
                  "hdrp_b,every float,100,,,,,0,3,,\n")
-FULL = HEAD + ("hdrp_a,0 to 1 1 of 3,9000,0.002,0.25,0.001,relative,0,0,a,0.002\n"
+FULL = HEAD + ("hdrp_a,0 to 1,9000,0.002,0.25,0.001,relative,0,0,a,0.002\n"
                "hdrp_b,every float,4294967296,,,,,0,30,,\n")
 
 
