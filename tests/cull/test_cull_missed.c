@@ -286,7 +286,7 @@ static void compare_pixels(const cull_test_scene* s, uint64_t seed, pixel_tally*
     }
 }
 
-/* Device depth instead of metres, of either direction. */
+/* Device depth instead of metres, of either direction. Sky is what buffers are cleared to. */
 static void to_device_depth(cull_test_scene* s, bool reverse)
 {
     float near_m = s->camera.eye_near.w, far_m = s->camera.right_far.w;
@@ -296,7 +296,9 @@ static void to_device_depth(cull_test_scene* s, bool reverse)
                            : hdrp_depth_params_perspective(near_m, far_m, reverse ? 1u : 0u);
     s->device = &s->device_params;
     for (size_t i = 0; i < count; ++i) {
-        s->texels[i] = hdrp_device_depth(s->device_params, s->texels[i]);
+        float sky = reverse ? 0.0f : 1.0f;
+        s->texels[i] =
+            s->texels[i] < far_m ? hdrp_device_depth(s->device_params, s->texels[i]) : sky;
     }
 }
 
