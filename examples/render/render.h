@@ -38,9 +38,9 @@ typedef struct rd_renderer {
     float* visibility[2]; /* of the surroundings: as traced, and blurred */
     rd_lists lists;       /* of lights */
     rd_variants variants;
-    hdrp_v3* lit;         /* opaque surfaces and the sky [nits] */
-    rd_pyramid pyramid;   /* of lit, for what is seen through rough glass */
-    float* film;          /* RGBA; A is the coverage. Sums, and means once rd_render has returned */
+    hdrp_v3* lit;       /* opaque surfaces and the sky [nits] */
+    rd_pyramid pyramid; /* of lit, for what is seen through rough glass */
+    float* film;        /* RGBA; A is the coverage. Sums, and means once rd_render has returned */
     rd_render_counts counts;
 } rd_renderer;
 
