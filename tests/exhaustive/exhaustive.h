@@ -87,7 +87,7 @@ static inline double ex_relative(double measured, double reference)
 /* The larger one; NaN if one of them is. fmax calls the C library, and hides NaN. */
 static inline double ex_larger(double a, double b)
 {
-    return (a >= b) | (a != a) ? a : b;
+    return ((a >= b) | (a != a)) ? a : b;
 }
 
 static inline double ex_clamp(double x, double lo, double hi)
