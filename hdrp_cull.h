@@ -36,7 +36,8 @@
  *
  * Lists are ordered by category, then by index, and do not depend on how the work was split. A tile
  * whose entries do not fit drops the least important shapes, of equals those of higher index, and
- * counts them: hdrp_cull_count.
+ * counts them: hdrp_cull_count. A shape needs an entry in every slice that it reaches; once one
+ * does not fit, what is less important is dropped too.
  *
  * >>index of the functions, without hdrp_cull_ (written by tools/api_check.py --write)
  *   grid: log2 series_scale grid_make tile_of_pixel slice cell
@@ -465,7 +466,8 @@ HDRP_API hdrp_result hdrp_cull_begin(hdrp_cull_lists* lists, const hdrp_cull_set
 /** Optional stage: the nearest and farthest opaque depth of tiles, and their slices. Nothing is
  *  known to be in front without it, as transparent surfaces and fog want it.
  *  lists      after hdrp_cull_begin
- *  depth      of the picture; what is NaN, at or beyond the far distance is sky
+ *  depth      of the picture; what is NaN, beyond the far distance or within a millionth of it is
+ *             sky
  *  first_row  [0,HDRP_CULL_SIZE_MAX]  first row of tiles
  *  row_count  [0,HDRP_CULL_SIZE_MAX]  how many: at most up to grid.tiles.w
  *  returns    HDRP_OK
@@ -497,8 +499,9 @@ HDRP_API size_t hdrp_cull_scratch_size(const hdrp_cull_desc* desc);
  *  scratch        block of the caller, aligned to HDRP_MEMORY_ALIGNMENT, for this call alone
  *  scratch_bytes  size of the block
  *  returns        HDRP_OK, also where shapes were dropped
- *  errors         HDRP_ERROR_NULL_POINTER, HDRP_ERROR_BAD_ARGUMENT for a bad range or a set that is
- *                 larger than desc.shape_capacity, HDRP_ERROR_MEMORY_TOO_SMALL,
+ *  errors         HDRP_ERROR_NULL_POINTER, HDRP_ERROR_BAD_ARGUMENT for a bad range, a set that is
+ *                 larger than desc.shape_capacity or of another camera than lists,
+ *                 HDRP_ERROR_TOO_LARGE for the target, HDRP_ERROR_MEMORY_TOO_SMALL,
  *                 HDRP_ERROR_MEMORY_ALIGNMENT
  *  memory         calls that run at the same time need scratch of their own; nothing is kept in it
  *  range          rows are independent */
@@ -903,11 +906,12 @@ HDRP_API hdrp_result hdrp_cull_begin(hdrp_cull_lists* lists, const hdrp_cull_set
 /* Pixels of a row that are read together. */
 #define HDRP_I_CULL_RUN 64u
 
-/* A depth in front of the camera; -1 for sky, NaN and what is behind. */
+/* A depth in front of the camera; -1 for sky, NaN and what is behind. Cleared depth, turned into
+ * metres, may fall short of the far distance by a rounding. */
 HDRP_FN float hdrp_i_cull_seen(float z, float near_m, float far_m)
 {
     float seen = z < near_m ? near_m : z;
-    float here = z < far_m ? seen : -1.0f;
+    float here = z < far_m * (1.0f - HDRP_CULL_MARGIN) ? seen : -1.0f;
     return z >= 0.0f ? here : -1.0f;
 }
 
@@ -1107,6 +1111,12 @@ HDRP_API size_t hdrp_cull_scratch_size(const hdrp_cull_desc* desc)
     hdrp_i_cull_scratch s;
     uint32_t columns, rows;
     if (d.width_px == 0u || hdrp_i_cull_tiles(&d, &columns, &rows) == 0u) {
+        return 0u;
+    }
+    /* More than 20 words for each shape, with its mask, and 8 for each pixel of a tile. */
+    if ((uint64_t)d.shape_capacity * (30u + columns + hdrp_i_cull_words(&d)) * 4u +
+            ((uint64_t)d.tile_width_px + 3u) * (d.tile_height_px + 3u) * 32u >
+        (uint64_t)(SIZE_MAX / 2u)) {
         return 0u;
     }
     return hdrp_i_cull_place_scratch(&s, &d, columns, NULL);
@@ -1927,6 +1937,7 @@ HDRP_API hdrp_result hdrp_cull_build(hdrp_cull_lists* lists, const hdrp_cull_set
 {
     hdrp_i_cull_job job;
     hdrp_result r;
+    size_t needed;
     uint32_t row;
     if (!lists || !set || ((lists->desc.flags & HDRP_CULL_PIXELS) && (!depth || !depth->texels))) {
         return HDRP_ERROR_NULL_POINTER;
@@ -1934,10 +1945,13 @@ HDRP_API hdrp_result hdrp_cull_build(hdrp_cull_lists* lists, const hdrp_cull_set
     if (hdrp_i_cull_bad_range(first_row, row_count, hdrp_cull_rows(lists)) ||
         set->count > lists->desc.shape_capacity || set->width_px != lists->desc.width_px ||
         set->height_px != lists->desc.height_px ||
+        memcmp(&set->camera, &lists->camera, sizeof set->camera) != 0 ||
         ((lists->desc.flags & HDRP_CULL_PIXELS) && depth->row_stride < lists->desc.width_px)) {
         return HDRP_ERROR_BAD_ARGUMENT;
     }
-    r = hdrp_i_cull_check_block(scratch, scratch_bytes, hdrp_cull_scratch_size(&lists->desc));
+    needed = hdrp_cull_scratch_size(&lists->desc);
+    r = needed > 0u ? hdrp_i_cull_check_block(scratch, scratch_bytes, needed)
+                    : HDRP_ERROR_TOO_LARGE;
     if (r != HDRP_OK) {
         return r;
     }

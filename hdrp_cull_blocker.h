@@ -963,6 +963,7 @@ typedef struct hdrp_cull_blocker_job {
     hdrp_cull_shadow* shadows; /* of all pairs, as far as this tile has asked for them */
     uint32_t* blocker_tile;    /* of each link, in which tile its own shadow was made */
     uint32_t* portals_tile;    /* the same for those of its portals */
+    uint32_t* light;           /* of each link, for which light: several may share a link */
     uint32_t tile_number;
     hdrp_cull_tile tile;
     hdrp_cull_interval depths;
@@ -971,8 +972,8 @@ typedef struct hdrp_cull_blocker_job {
 
 /** Bytes of scratch memory that a job needs.
  *  set      after hdrp_cull_blocker_begin
- *  returns  bytes, a multiple of HDRP_MEMORY_ALIGNMENT: 24 for each link and 16 for each of its
- *           portals, and less than 64
+ *  returns  bytes, a multiple of HDRP_MEMORY_ALIGNMENT: 28 for each link and 16 for each of its
+ *           portals, and less than 80
  *  edges    0 where set is NULL */
 HDRP_API size_t hdrp_cull_blocker_scratch_size(const hdrp_cull_blocker_set* set);
 
@@ -1233,6 +1234,7 @@ static size_t hdrp_i_cull_blocker_place_job(hdrp_cull_blocker_job* job,
         (uint32_t*)hdrp_i_cull_blocker_take(scratch, &used, links, sizeof *job->blocker_tile);
     job->portals_tile =
         (uint32_t*)hdrp_i_cull_blocker_take(scratch, &used, links, sizeof *job->portals_tile);
+    job->light = (uint32_t*)hdrp_i_cull_blocker_take(scratch, &used, links, sizeof *job->light);
     return used + HDRP_MEMORY_ALIGNMENT;
 }
 
@@ -1255,6 +1257,7 @@ HDRP_API hdrp_result hdrp_cull_blocker_job_begin(hdrp_cull_blocker_job* job,
         hdrp_i_cull_blocker_place_job(job, set, scratch);
         memset(job->blocker_tile, 0, set->scene.link_count * sizeof *job->blocker_tile);
         memset(job->portals_tile, 0, set->scene.link_count * sizeof *job->portals_tile);
+        memset(job->light, 0, set->scene.link_count * sizeof *job->light);
     }
     return r;
 }
@@ -1313,6 +1316,10 @@ HDRP_API uint32_t hdrp_cull_blocker_classify(hdrp_cull_blocker_job* job, uint32_
     }
     for (k = 0u; k < scene->lights[light].count && stays; ++k) {
         uint32_t link = scene->lights[light].first + k, c;
+        if (job->light[link] != light) { /* tiles count from 1 */
+            job->light[link] = light;
+            job->blocker_tile[link] = job->portals_tile[link] = 0u;
+        }
         if (job->blocker_tile[link] != job->tile_number) {
             hdrp_i_cull_blocker_shadow(job, job->set->first_pair[link], scene->links[link], light);
             job->blocker_tile[link] = job->tile_number;

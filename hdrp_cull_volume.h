@@ -24,7 +24,8 @@
  * sphere is treated as the ball that contains it, but for single positions.
  *
  * Comparisons decide here what is listed, so nothing in this header may be contracted to fused
- * multiply-adds: the results are the same in every build. See hdrp_math.h for the languages and the
+ * multiply-adds: the results are the same in every build, but for clang's -ffp-contract=fast, which
+ * takes no orders from headers. See hdrp_math.h for the languages and the
  * override macros. There is no algorithm layer.
  *
  * >>index of the functions, without hdrp_cull_ (written by tools/api_check.py --write)
@@ -247,7 +248,9 @@ struct hdrp_cull_shape {
     hdrp_v4 up_half;      /* xyz unit, w [0,1e18] m */
     hdrp_v4 forward_half; /* xyz unit, w [0,1e18] m */
     hdrp_v4 half_angle;   /* [-1,1] cos and sin across right, then across up */
-    hdrp_u32x4 bits; /* x kind | category << 8 | ..._AHEAD, y layers, z features, w importance */
+    /* any: x kind | category << 8 | ..._AHEAD, y layers, for shading alone, z features, w the bits
+     * of a float that is not negative, hdrp_bits_from_f32: the importance */
+    hdrp_u32x4 bits;
 };
 HDRP_TYPEDEF(hdrp_cull_shape)
 

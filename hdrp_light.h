@@ -1343,7 +1343,7 @@ HDRP_FN hdrp_light_incident hdrp_light_eval_spot(hdrp_light light, hdrp_v3 posit
  *  edges     those of hdrp_light_eval_point; black outside the faces; its own position is inside
  *  error     <= 6.4e-6 absolute, as a share of candela / d^2, for half angles of at least 10
  *            degrees and edges of at least 0.1  @accuracy light_eval_pyramid
- *  error     <= 7.7e-5 absolute, likewise from 1 degree on  @accuracy light_eval_pyramid_narrow
+ *  error     <= 3.9e-5 absolute, likewise from 1 degree on  @accuracy light_eval_pyramid_narrow
  *  source    see hdrp_light_pyramid_attenuation */
 HDRP_FN hdrp_light_incident hdrp_light_eval_pyramid(hdrp_light light, hdrp_v3 position)
 {

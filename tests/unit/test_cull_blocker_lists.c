@@ -46,6 +46,10 @@ static void make_world(world* w, uint64_t* seed, bool orthographic)
         if (i < LIGHTS) {
             w->shapes[i] = hdrp_cull_shape_from_light(light);
             w->places[i] = hdrp_cull_light_place(light);
+            if (i % 7u == 6u) { /* lights of one room share its walls */
+                w->lights[i] = w->lights[i - 1u];
+                continue;
+            }
             w->lights[i].first = w->scene.link_count;
             w->lights[i].count = test_below(seed, 4);
             w->scene.link_count += w->lights[i].count;

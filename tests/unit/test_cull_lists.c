@@ -313,6 +313,11 @@ static void frames_and_ranges_are_checked(void** state)
                      HDRP_ERROR_BAD_ARGUMENT);
     assert_int_equal(BUILD(&s.lists, &s.set, &depth, rows, 0, s.scratch, s.scratch_bytes), HDRP_OK);
     assert_int_equal(BUILD(&s.lists, &s.set, &depth, 0, rows, s.scratch, s.scratch_bytes), HDRP_OK);
+    /* The set of the other eye. */
+    c.eye_near.x += 0.06f;
+    assert_int_equal(hdrp_cull_set_begin(&s.set, &c, WIDTH, HEIGHT, 1u), HDRP_OK);
+    assert_int_equal(BUILD(&s.lists, &s.set, &depth, 0, rows, s.scratch, s.scratch_bytes),
+                     HDRP_ERROR_BAD_ARGUMENT);
     /* A picture of another size. */
     assert_int_equal(hdrp_cull_set_begin(&s.set, &c, WIDTH + 1u, HEIGHT, 1u), HDRP_OK);
     assert_int_equal(hdrp_cull_begin(&s.lists, &s.set), HDRP_ERROR_BAD_ARGUMENT);
@@ -630,9 +635,33 @@ static void rows_may_be_built_in_any_order(void** state)
     scene_free(&t);
 }
 
+/* Of 0.1 and 1000 m the far plane comes back as 999.99994 m. */
+static void cleared_device_depth_is_sky(void** state)
+{
+    (void)state;
+    for (hdrp_u32 reverse = 0u; reverse < 2u; ++reverse) {
+        static float texels[WIDTH * HEIGHT];
+        hdrp_depth_params device = hdrp_depth_params_perspective(0.1f, 1000.0f, reverse);
+        hdrp_cull_depth depth = {texels, WIDTH, &device};
+        hdrp_cull_shape shape = hdrp_cull_shape_sphere(v3(0, 0, 10), 1.0f, 0u);
+        scene s = scene_make(desc_of(1u, 0u), &shape, 1u);
+        hdrp_cull_camera c = hdrp_cull_camera_perspective(v3(0, 0, 0), v3(0, 0, 1), v3(0, 1, 0),
+                                                          -1.0f, 1.0f, -1.0f, 1.0f, 0.1f, 1000.0f);
+        for (size_t i = 0; i < WIDTH * HEIGHT; ++i) {
+            texels[i] = reverse ? 0.0f : 1.0f;
+        }
+        assert_int_equal(hdrp_cull_set_begin(&s.set, &c, WIDTH, HEIGHT, 1u), HDRP_OK);
+        assert_int_equal(hdrp_cull_begin(&s.lists, &s.set), HDRP_OK);
+        assert_int_equal(hdrp_cull_measure_depth(&s.lists, &depth, 0u, 1u), HDRP_OK);
+        assert_true(s.lists.tiles[0].x > s.lists.tiles[0].y);
+        scene_free(&s);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(cleared_device_depth_is_sky),
         cmocka_unit_test(sizes_that_are_out_of_range_need_no_memory),
         cmocka_unit_test(a_set_that_cannot_be_made_is_left_alone),
         cmocka_unit_test(shapes_are_projected_in_any_ranges),
