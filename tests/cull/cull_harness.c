@@ -291,7 +291,8 @@ float cull_scene_depth_of_pixel(const cull_test_scene* s, uint32_t x, uint32_t y
 {
     float z = s->texels[(size_t)y * s->desc.width_px + x];
     z = s->device != NULL ? hdrp_view_depth(*s->device, z) : z;
-    if (!(z >= 0.0f && z < s->camera.right_far.w)) {
+    /* What is within a millionth of the far distance counts as sky. */
+    if (!(z >= 0.0f && z < s->camera.right_far.w * (1.0f - 1e-6f))) {
         return -1.0f;
     }
     return z < s->camera.eye_near.w ? s->camera.eye_near.w : z;

@@ -497,7 +497,9 @@ static float depth_of_place(const frame* f, uint32_t seed, uint32_t x, uint32_t 
         z = f->texels[y * f->depth.row_stride + x];
         z = f->depth.device ? hdrp_view_depth(f->device, z) : z;
     }
-    return z >= near_m && z < f->camera.right_far.w ? z : hdrp_f32_from_bits(0x7fc00000u);
+    return z >= near_m && z < f->camera.right_far.w * (1.0f - 2e-6f)
+               ? z
+               : hdrp_f32_from_bits(0x7fc00000u);
 }
 
 /* Shapes are listed where a place is well inside of them. */
