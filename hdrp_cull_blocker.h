@@ -85,8 +85,7 @@ HDRP_FN hdrp_v3 hdrp_i_cull_blocker_mad(hdrp_v3 a, hdrp_v3 b, float s)
 /* >>blockers
  * A portal is the same record. C, std430 and structured buffers share the layout, 80 bytes. */
 
-/* Made by hdrp_cull_blocker_rectangle, hdrp_cull_blocker_plane and
- * hdrp_cull_blocker_with_portals. */
+/* Made by hdrp_cull_blocker_rectangle and hdrp_cull_blocker_plane. */
 struct hdrp_cull_blocker {
     hdrp_v4 center;     /* xyz [-1e18,1e18], w [0,0] */
     hdrp_v4 right_half; /* xyz unit, w [0,1e18] m half size along it */
