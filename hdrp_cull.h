@@ -23,12 +23,7 @@
  *     hdrp_cull_measure_depth(&lists, &depth, 0, lists.grid.tiles.w);   rows of tiles; or none
  *     hdrp_cull_build(&lists, &set, NULL, 0, hdrp_cull_rows(&lists), scratch, bytes);
  *
- * A shader copies set, cells, entries and tiles to buffers and reads them with the formulas below:
- *
- *     tile = hdrp_cull_tile_of_pixel(grid, x, y);
- *     cell = cells[hdrp_cull_cell(grid, tile, hdrp_cull_slice(grid, tiles[tile], z_view))];
- *     for (i = hdrp_cull_first(cell, category); i < hdrp_cull_last(cell, category); ++i)
- *         shade with light hdrp_cull_entry_index(entries[i])
+ * A shader gets grid, cells, entries and tiles in buffers, and reads them as hdrp_cull_grid.h says.
  *
  * Fine-pruned tiles, for opaque surfaces: tile_width_px = tile_height_px = 16, slice_count = 1, and
  * HDRP_CULL_PIXELS, which keeps what reaches at least one pixel; HDRP_CULL_BLOCKS notes of each
@@ -40,8 +35,6 @@
  * does not fit, what is less important is dropped too.
  *
  * >>index of the functions, without hdrp_cull_ (written by tools/api_check.py --write)
- *   grid: log2 series_scale grid_make tile_of_pixel slice cell
- *   lists: first last entry_index entry_covers mask_words mask_word mask_bit lowest_bit
  *   sets of shapes: set_memory_size set_init set_begin set_project
  *   grids of lists: memory_size init begin measure_depth rows scratch_size build count masks
  *       apply_blockers
@@ -50,6 +43,7 @@
 #define HDRP_CULL_H
 
 #include "hdrp_cull_blocker.h"
+#include "hdrp_cull_grid.h"
 #include "hdrp_cull_variant.h"
 #include "hdrp_cull_volume.h"
 
@@ -65,283 +59,12 @@
 #pragma STDC FP_CONTRACT OFF
 #endif
 
-/* Largest picture, in pixels along a side. */
-#define HDRP_CULL_SIZE_MAX 16384u
-/* Shapes of a set: their indices have 16 bits. */
-#define HDRP_CULL_SHAPES_MAX 65535u
-/* Slices of a tile. */
-#define HDRP_CULL_SLICES_MAX 256u
-
 /* Flags of hdrp_cull_desc. */
-#define HDRP_CULL_FAST       1u /* rectangles and depths only: looser, several times faster */
+#define HDRP_CULL_FAST       1u /* rectangles and depths only; not with HDRP_CULL_PIXELS */
 #define HDRP_CULL_ONE_SERIES 2u /* slices at the same depths in all tiles */
 #define HDRP_CULL_PIXELS     4u /* one slice only: keep what reaches a pixel of the depth buffer */
 #define HDRP_CULL_BLOCKS     8u /* the same, for each sixteenth of a tile: hdrp_cull_entry_covers */
 #define HDRP_CULL_MASKS      16u /* the same, for each pixel: hdrp_cull_mask_word */
-
-/* >>grid
- * What a shader needs to find the list of a position. Of each tile it also needs a vector, written
- * by hdrp_cull_measure_depth: x nearest and y farthest opaque depth [m], nothing opaque where
- * x > y; z scale of its slices, w 0. */
-
-/* Made by hdrp_cull_grid_make. */
-struct hdrp_cull_grid {
-    hdrp_u32x4 tiles; /* any  width and height in px of a tile, columns, rows */
-    hdrp_u32x4 cells; /* any  slices of a tile, entries of a tile, width and height of a block */
-    hdrp_v4 series;   /* x [1e-6,1e9] m, y [-20,30] its log2, z [1e-6,1e18] m, w [0,1e7] scale */
-};
-HDRP_TYPEDEF(hdrp_cull_grid)
-
-#ifndef HDRP_GPU
-typedef char hdrp_i_cull_grid_size_of[sizeof(hdrp_cull_grid) == 48 ? 1 : -1];
-#endif
-
-/** Logarithm to the base 2 for slices: a cubic in each octave, made of +, - and * alone, so that no
- *  device rounds it differently.
- *  x        [FLT_MIN,FLT_MAX]
- *  returns  [-126,128]  rises with x; exact for powers of 2
- *  edges    smaller x and NaN count as FLT_MIN
- *  error    <= 1.3e-4 absolute  @accuracy cull_log2
- *  source   our own minimax fit of q in log2(1 + m) = m + m (1 - m) q(m), by tools/fit_cull.py */
-HDRP_FN float hdrp_cull_log2(float x)
-{
-    hdrp_u32 u = hdrp_bits_from_f32(hdrp_clamp(x, HDRP_FLT_MIN, HDRP_FLT_MAX));
-    float e = hdrp_f32_from_u32(u >> 23) - 127.0f;
-    float m = hdrp_f32_from_bits((u & 0x007fffffu) | 0x3f800000u) - 1.0f;
-    float q = 0.43872573f + m * (-0.23905817f + m * 0.08213063f);
-    return e + (m + m * (1.0f - m) * q);
-}
-
-/** Scale of the slices of a tile: half of them are in front of a depth.
- *  grid        valid
- *  farthest_m  any      farthest opaque depth
- *  returns     [0,1e7]  slices in an octave of depth
- *  edges       a depth up to a thousandth of an octave beyond the start of the series counts as
- *              that, and so does NaN; an infinite one counts as FLT_MAX
- *  error       none: a definition
- *  source      Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
- *              Definition Render Pipeline", slides on clustered lists; without the limit that their
- *              series has when the farthest depth is far */
-HDRP_FN float hdrp_cull_series_scale(hdrp_cull_grid grid, float farthest_m)
-{
-    float octaves = hdrp_cull_log2(farthest_m) - grid.series.y;
-    return hdrp_f32_from_u32(grid.cells.x >> 1) / hdrp_max(octaves, 1e-3f);
-}
-
-/* x, but at least 1 and at most a limit. */
-HDRP_FN hdrp_u32 hdrp_i_cull_limit_u32(hdrp_u32 x, hdrp_u32 limit)
-{
-    hdrp_u32 y = x > 0u ? x : 1u;
-    return y < limit ? y : limit;
-}
-
-/** The grid over a picture.
- *  camera          valid
- *  picture         any  x width and y height in px, z slices, w entries of a tile
- *  tile            any  x width and y height in px, z and w 0
- *  series_start_m  any  first boundary between slices comes after this; 0: the near distance
- *  series_end_m    any  last slice of a tile without depth ends here; 0: the far distance, but at
- *                       most 1000 times the start
- *  returns         valid
- *  edges           sizes and slices of 0 count as 1, what is beyond HDRP_CULL_SIZE_MAX and
- *                  HDRP_CULL_SLICES_MAX as these; the last slice reaches to the far distance,
- *                  wherever the series ends
- *  error           none: limits
- *  source          a definition */
-HDRP_FN hdrp_cull_grid hdrp_cull_grid_make(hdrp_cull_camera camera, hdrp_u32x4 picture,
-                                           hdrp_u32x4 tile, float series_start_m,
-                                           float series_end_m)
-{
-    hdrp_cull_grid g;
-    hdrp_u32 w = hdrp_i_cull_limit_u32(tile.x, HDRP_CULL_SIZE_MAX);
-    hdrp_u32 h = hdrp_i_cull_limit_u32(tile.y, HDRP_CULL_SIZE_MAX);
-    hdrp_u32 columns = (hdrp_i_cull_limit_u32(picture.x, HDRP_CULL_SIZE_MAX) + w - 1u) / w;
-    hdrp_u32 rows = (hdrp_i_cull_limit_u32(picture.y, HDRP_CULL_SIZE_MAX) + h - 1u) / h;
-    hdrp_u32 slices = hdrp_i_cull_limit_u32(picture.z, HDRP_CULL_SLICES_MAX);
-    float start =
-        hdrp_clamp(series_start_m > 0.0f ? series_start_m : camera.eye_near.w, 1e-6f, 1e9f);
-    float end = hdrp_min(camera.right_far.w, 1000.0f * start);
-    float octaves;
-    end = hdrp_clamp(series_end_m > 0.0f ? series_end_m : end, start, HDRP_CULL_FAR_INFINITE);
-    g.tiles = hdrp_u32x4_make(w, h, columns, rows);
-    g.cells = hdrp_u32x4_make(slices, picture.w, (w + 3u) >> 2, (h + 3u) >> 2);
-    octaves = hdrp_max(hdrp_cull_log2(end) - hdrp_cull_log2(start), 1e-3f);
-    g.series = hdrp_v4_make(start, hdrp_cull_log2(start), end, hdrp_f32_from_u32(slices) / octaves);
-    return g;
-}
-
-/** The tile that holds a pixel.
- *  grid     valid
- *  x_px     any  from the left
- *  y_px     any  from the top
- *  returns  any  index of the tile, row by row
- *  edges    pixels beyond the picture belong to no tile: their result means nothing
- *  error    none: a definition
- *  source   a definition */
-HDRP_FN hdrp_u32 hdrp_cull_tile_of_pixel(hdrp_cull_grid grid, hdrp_u32 x_px, hdrp_u32 y_px)
-{
-    return (y_px / grid.tiles.y) * grid.tiles.z + x_px / grid.tiles.x;
-}
-
-/** The slice that holds a depth.
- *  grid     valid
- *  scale    [0,1e7]  of the tile
- *  z_view   any      m
- *  returns  [0,255]
- *  edges    in front of the series the first slice, behind it the last; NaN counts as 0
- *  error    none: a definition; what is listed in a slice allows for a depth that is off by 1e-6
- *  source   Olsson, Billeter and Assarsson 2012, "Clustered Deferred and Forward Shading", eq. 2 */
-HDRP_FN hdrp_u32 hdrp_cull_slice(hdrp_cull_grid grid, float scale, float z_view)
-{
-    float k = (hdrp_cull_log2(z_view) - grid.series.y) * scale;
-    float last = hdrp_f32_from_u32(grid.cells.x) - 1.0f;
-    return hdrp_u32_from_f32(hdrp_clamp(k, 0.0f, last));
-}
-
-/** The cell of a slice of a tile.
- *  grid     valid
- *  tile     any  from hdrp_cull_tile_of_pixel
- *  slice    any  from hdrp_cull_slice
- *  returns  any  index
- *  edges    none
- *  error    none: a definition
- *  source   a definition */
-HDRP_FN hdrp_u32 hdrp_cull_cell(hdrp_cull_grid grid, hdrp_u32 tile, hdrp_u32 slice)
-{
-    return tile * grid.cells.x + slice;
-}
-
-/* >>lists
- * A cell is x the first of its entries, y and z the counts of the four categories, 16 bits each,
- * the first in the low bits of y, and w how many shapes its tile has dropped. */
-
-/* Entries of a category. */
-HDRP_FN hdrp_u32 hdrp_i_cull_count(hdrp_u32x4 cell, hdrp_u32 category)
-{
-    hdrp_u32 both = category < 2u ? cell.y : cell.z;
-    return (both >> ((category & 1u) << 4)) & 0xffffu;
-}
-
-/** Index of the first entry of a category in a cell.
- *  cell      any    from the cells of hdrp_cull_build
- *  category  [0,3]  HDRP_CULL_CATEGORY_...
- *  returns   any    into the entries
- *  edges     the entries of a cell are contiguous: those of all categories are from the first of
- *            category 0 up to the last of category 3
- *  error     none: a selection of bits
- *  source    a definition */
-HDRP_FN hdrp_u32 hdrp_cull_first(hdrp_u32x4 cell, hdrp_u32 category)
-{
-    hdrp_u32 first = cell.x;
-    first += category > 0u ? cell.y & 0xffffu : 0u;
-    first += category > 1u ? cell.y >> 16 : 0u;
-    first += category > 2u ? cell.z & 0xffffu : 0u;
-    return first;
-}
-
-/** Index behind the last entry of a category in a cell.
- *  cell      any    from the cells of hdrp_cull_build
- *  category  [0,3]  HDRP_CULL_CATEGORY_...
- *  returns   any    into the entries
- *  edges     hdrp_cull_first where there is none
- *  error     none: a selection of bits
- *  source    a definition */
-HDRP_FN hdrp_u32 hdrp_cull_last(hdrp_u32x4 cell, hdrp_u32 category)
-{
-    return hdrp_cull_first(cell, category) + hdrp_i_cull_count(cell, category);
-}
-
-/** The shape of an entry.
- *  entry    any
- *  returns  [0,65535]  index into the shapes of the set
- *  edges    none
- *  error    none: a selection of bits
- *  source   a definition */
-HDRP_FN hdrp_u32 hdrp_cull_entry_index(hdrp_u32 entry)
-{
-    return entry & 0xffffu;
-}
-
-/** Whether the shape of an entry reaches the block of a pixel: a sixteenth of its tile.
- *  grid     valid
- *  entry    any
- *  x_px     any
- *  y_px     any
- *  returns  [0,1]  1 where it may; always 1 in lists without HDRP_CULL_BLOCKS
- *  edges    the pixel has to be in the tile of the list
- *  error    none: a selection of bits
- *  source   a definition */
-HDRP_FN hdrp_u32 hdrp_cull_entry_covers(hdrp_cull_grid grid, hdrp_u32 entry, hdrp_u32 x_px,
-                                        hdrp_u32 y_px)
-{
-    hdrp_u32 x = (x_px % grid.tiles.x) / grid.cells.z;
-    hdrp_u32 y = (y_px % grid.tiles.y) / grid.cells.w;
-    return (entry >> (16u + ((y & 3u) * 4u + (x & 3u)))) & 1u;
-}
-
-/* Where a pixel is in the mask of a tile: block by block, in each row by row. */
-HDRP_FN hdrp_u32 hdrp_i_cull_mask_place(hdrp_cull_grid grid, hdrp_u32 x_px, hdrp_u32 y_px)
-{
-    hdrp_u32 x = x_px % grid.tiles.x;
-    hdrp_u32 y = y_px % grid.tiles.y;
-    hdrp_u32 block = (y / grid.cells.w) * 4u + x / grid.cells.z;
-    hdrp_u32 in_block = (y % grid.cells.w) * grid.cells.z + x % grid.cells.z;
-    return block * (grid.cells.z * grid.cells.w) + in_block;
-}
-
-/** Words of the mask of an entry: 8 for tiles of 16 x 16 pixels.
- *  grid     valid
- *  returns  any
- *  edges    none
- *  error    none: a definition
- *  source   a definition
- *  note     one block after the other, of half a word or more each: a word is 8 x 4 pixels, which a
- *           group of threads asks together */
-HDRP_FN hdrp_u32 hdrp_cull_mask_words(hdrp_cull_grid grid)
-{
-    return (grid.cells.z * grid.cells.w + 1u) >> 1;
-}
-
-/** The word that says whether the shape of an entry reaches a pixel, in lists with HDRP_CULL_MASKS.
- *  grid     valid
- *  entry    any  index of the entry, not the entry
- *  x_px     any
- *  y_px     any
- *  returns  any  index into the masks; hdrp_cull_mask_bit says which bit
- *  edges    the pixel has to be in the tile of the list
- *  error    none: a definition
- *  source   a definition */
-HDRP_FN hdrp_u32 hdrp_cull_mask_word(hdrp_cull_grid grid, hdrp_u32 entry, hdrp_u32 x_px,
-                                     hdrp_u32 y_px)
-{
-    return entry * hdrp_cull_mask_words(grid) + (hdrp_i_cull_mask_place(grid, x_px, y_px) >> 5);
-}
-
-/** The bit of the word that stands for a pixel.
- *  grid     valid
- *  x_px     any
- *  y_px     any
- *  returns  [0,31]
- *  edges    none
- *  error    none: a definition
- *  source   a definition */
-HDRP_FN hdrp_u32 hdrp_cull_mask_bit(hdrp_cull_grid grid, hdrp_u32 x_px, hdrp_u32 y_px)
-{
-    return hdrp_i_cull_mask_place(grid, x_px, y_px) & 31u;
-}
-
-/** Index of the lowest bit of a word of a bit mask.
- *  word     [1,4294967295]
- *  returns  [0,31]
- *  edges    means nothing for 0
- *  error    none: exact
- *  source   the exponent of a power of 2
- *  note     word & (word - 1) is the word without that bit, for the next turn of a loop */
-HDRP_FN hdrp_u32 hdrp_cull_lowest_bit(hdrp_u32 word)
-{
-    hdrp_u32 lowest = word & (~word + 1u);
-    return (hdrp_bits_from_f32(hdrp_f32_from_u32(lowest)) >> 23) - 127u;
-}
 
 #ifndef HDRP_GPU
 #ifdef __cplusplus
@@ -770,6 +493,8 @@ static hdrp_cull_desc hdrp_i_cull_defaults(const hdrp_cull_desc* desc)
     }
     d.flags |= (d.flags & HDRP_CULL_MASKS) ? HDRP_CULL_BLOCKS : 0u;
     d.flags |= (d.flags & HDRP_CULL_BLOCKS) ? HDRP_CULL_PIXELS : 0u;
+    /* Fewer shapes to ask the pixels about save more than finding them out costs. */
+    d.flags &= (d.flags & HDRP_CULL_PIXELS) ? ~HDRP_CULL_FAST : ~0u;
     if (d.width_px > HDRP_CULL_SIZE_MAX || d.height_px > HDRP_CULL_SIZE_MAX || d.height_px < 1u ||
         d.tile_width_px > HDRP_CULL_SIZE_MAX || d.tile_height_px > HDRP_CULL_SIZE_MAX ||
         d.slice_count > HDRP_CULL_SLICES_MAX || d.shape_capacity > HDRP_CULL_SHAPES_MAX ||
@@ -915,8 +640,8 @@ HDRP_FN float hdrp_i_cull_seen(float z, float near_m, float far_m)
     return z >= 0.0f ? here : -1.0f;
 }
 
-static void hdrp_i_cull_read(const hdrp_cull_depth* depth, const hdrp_cull_camera* camera,
-                             const float* texels, uint32_t count, float* z)
+HDRP_FN void hdrp_i_cull_read(const hdrp_cull_depth* depth, const hdrp_cull_camera* camera,
+                              const float* texels, uint32_t count, float* z)
 {
     float near_m = camera->eye_near.w, far_m = camera->right_far.w;
     uint32_t i;
@@ -935,7 +660,7 @@ static void hdrp_i_cull_read(const hdrp_cull_depth* depth, const hdrp_cull_camer
 }
 
 /* Widens the range of each column of a run. */
-static void hdrp_i_cull_widen(const float* z, uint32_t count, float* nearest, float* farthest)
+HDRP_FN void hdrp_i_cull_widen(const float* z, uint32_t count, float* nearest, float* farthest)
 {
     uint32_t i;
     HDRP_I_CULL_INDEPENDENT
@@ -1015,13 +740,16 @@ HDRP_API hdrp_result hdrp_cull_measure_depth(hdrp_cull_lists* lists, const hdrp_
 typedef struct hdrp_i_cull_scratch {
     uint16_t* coarse;       /* shapes of each coarse cell of a row */
     uint32_t* coarse_count; /* how many */
-    /* Candidates: the shape, its rectangle in pixels and its depths. */
+    /* Candidates: the shape, its rectangle in pixels, depths, ball, and its depths in a tile. */
     uint16_t* candidate;
     float *left, *upper, *right, *lower, *nearest, *farthest;
-    uint32_t* overlaps; /* 1 where both overlap those of a tile */
-    /* Hits: the shape, its ball, its depths in the tile, its slices. */
-    uint16_t* hit;
-    float *x, *y, *z, *radius, *hit_nearest, *hit_farthest;
+    float *x, *y, *z, *radius;
+    float *tile_nearest, *tile_farthest;
+    uint8_t* is_ball;
+    uint8_t* around; /* 1 for a ball around all that the tile shows */
+    /* Hits: the shape, which candidate it is, its depths in the tile, its slices. */
+    uint16_t *hit, *origin;
+    float *hit_nearest, *hit_farthest;
     uint8_t *hit_first, *hit_last;
     uint16_t* blocks; /* what it reaches */
     uint32_t* masks;  /* the pixels that it reaches */
@@ -1042,10 +770,13 @@ typedef struct hdrp_i_cull_job {
     const hdrp_cull_depth* depth;
     hdrp_i_cull_scratch s;
     uint32_t coarse_columns, coarse_rows;             /* tiles of a coarse cell */
+    uint32_t present;                                 /* a bit for each category */
     uint32_t candidate_end[HDRP_CULL_CATEGORY_COUNT]; /* of each category */
     uint32_t hit_end[HDRP_CULL_CATEGORY_COUNT];
     uint32_t hit_count;
+    int all_balls;           /* no candidate has planes */
     uint32_t x0, y0, x1, y1; /* of the tile, in px */
+    hdrp_v4 rect_px;         /* the same as floats */
 } hdrp_i_cull_job;
 
 /* Tiles of a coarse cell along one side. */
@@ -1067,10 +798,22 @@ static size_t hdrp_i_cull_place_scratch(hdrp_i_cull_scratch* s, const hdrp_cull_
     size_t across = (columns + hdrp_i_cull_coarse_tiles(d->tile_width_px) - 1u) /
                     hdrp_i_cull_coarse_tiles(d->tile_width_px);
     size_t pixels = 0u, across_px = 0u;
-    float** of_shapes[] = {&s->left,    &s->upper,    &s->right,       &s->lower,
-                           &s->nearest, &s->farthest, &s->x,           &s->y,
-                           &s->z,       &s->radius,   &s->hit_nearest, &s->hit_farthest};
-    uint16_t** indices[] = {&s->candidate, &s->hit, &s->blocks, &s->keep};
+    float** of_shapes[] = {&s->left,
+                           &s->upper,
+                           &s->right,
+                           &s->lower,
+                           &s->nearest,
+                           &s->farthest,
+                           &s->x,
+                           &s->y,
+                           &s->z,
+                           &s->radius,
+                           &s->tile_nearest,
+                           &s->tile_farthest,
+                           &s->hit_nearest,
+                           &s->hit_farthest};
+    uint16_t** indices[] = {&s->candidate, &s->hit, &s->origin, &s->blocks, &s->keep};
+    uint8_t** bytes[] = {&s->is_ball, &s->around, &s->hit_first, &s->hit_last};
     size_t i;
     a.block = (unsigned char*)memory;
     a.used = 0u;
@@ -1087,9 +830,9 @@ static size_t hdrp_i_cull_place_scratch(hdrp_i_cull_scratch* s, const hdrp_cull_
     for (i = 0u; i < sizeof indices / sizeof indices[0]; ++i) {
         *indices[i] = (uint16_t*)hdrp_i_cull_take(&a, n, sizeof(uint16_t));
     }
-    s->overlaps = (uint32_t*)hdrp_i_cull_take(&a, n, sizeof(uint32_t));
-    s->hit_first = (uint8_t*)hdrp_i_cull_take(&a, n, 1u);
-    s->hit_last = (uint8_t*)hdrp_i_cull_take(&a, n, 1u);
+    for (i = 0u; i < sizeof bytes / sizeof bytes[0]; ++i) {
+        *bytes[i] = (uint8_t*)hdrp_i_cull_take(&a, n, 1u);
+    }
     s->order = (uint64_t*)hdrp_i_cull_take(&a, n, sizeof(uint64_t));
     s->local_x = hdrp_i_cull_floats(&a, pixels);
     s->local_y = hdrp_i_cull_floats(&a, pixels);
@@ -1147,13 +890,10 @@ static void hdrp_i_cull_collect(hdrp_i_cull_job* job, uint32_t coarse_row, uint3
     const hdrp_cull_set* set = job->set;
     uint32_t tile_rows = job->coarse_rows * job->lists->grid.tiles.y;
     float upper = (float)(coarse_row * tile_rows), lower = (float)((coarse_row + 1u) * tile_rows);
-    uint32_t present = 0u, category, i;
+    uint32_t category, i;
     memset(job->s.coarse_count, 0, across * sizeof *job->s.coarse_count);
-    for (i = 0u; i < set->count; ++i) {
-        present |= 1u << hdrp_i_cull_category(set, i);
-    }
     for (category = 0u; category < HDRP_CULL_CATEGORY_COUNT; ++category) {
-        for (i = 0u; present >> category & 1u && i < set->count; ++i) {
+        for (i = 0u; job->present >> category & 1u && i < set->count; ++i) {
             const hdrp_cull_bounds* b = &set->bounds[i];
             if (b->rect_px.y <= lower && b->rect_px.w >= upper && b->rect_px.x <= b->rect_px.z &&
                 hdrp_i_cull_category(set, i) == category) {
@@ -1163,6 +903,9 @@ static void hdrp_i_cull_collect(hdrp_i_cull_job* job, uint32_t coarse_row, uint3
     }
 }
 
+/* Arrays are as long as whole vectors, so that no loop has a rest to be done one by one. */
+#define HDRP_I_CULL_WHOLE(count) (((count) + 7u) & ~7u)
+
 /* The shapes of a coarse cell become candidates. */
 static void hdrp_i_cull_gather(hdrp_i_cull_job* job, uint32_t column)
 {
@@ -1170,9 +913,11 @@ static void hdrp_i_cull_gather(hdrp_i_cull_job* job, uint32_t column)
     const uint16_t* shapes = s->coarse + (size_t)column * s->capacity;
     uint32_t count = s->coarse_count[column], m, category;
     memset(job->candidate_end, 0, sizeof job->candidate_end);
+    job->all_balls = 1;
     for (m = 0u; m < count; ++m) {
         uint32_t i = shapes[m];
         const hdrp_cull_bounds* b = &job->set->bounds[i];
+        const hdrp_v4* ball = &job->set->balls[i];
         s->candidate[m] = (uint16_t)i;
         s->left[m] = b->rect_px.x;
         s->upper[m] = b->rect_px.y;
@@ -1180,11 +925,18 @@ static void hdrp_i_cull_gather(hdrp_i_cull_job* job, uint32_t column)
         s->lower[m] = b->rect_px.w;
         s->nearest[m] = b->nearest;
         s->farthest[m] = b->farthest;
+        s->x[m] = ball->x;
+        s->y[m] = ball->y;
+        s->z[m] = ball->z;
+        s->radius[m] = ball->w;
+        s->is_ball[m] = hdrp_i_cull_is_ball(job->set, i) ? 1u : 0u;
+        job->all_balls &= s->is_ball[m];
         job->candidate_end[hdrp_i_cull_category(job->set, i)] = m + 1u;
     }
-    for (; m < ((count + 7u) & ~7u); ++m) {
+    for (; m < HDRP_I_CULL_WHOLE(count); ++m) {
         s->left[m] = s->upper[m] = s->right[m] = s->lower[m] = 0.0f;
         s->nearest[m] = s->farthest[m] = 0.0f;
+        s->x[m] = s->y[m] = s->z[m] = s->radius[m] = 0.0f;
     }
     for (category = 1u; category < HDRP_CULL_CATEGORY_COUNT; ++category) {
         if (job->candidate_end[category] < job->candidate_end[category - 1u]) {
@@ -1195,105 +947,92 @@ static void hdrp_i_cull_gather(hdrp_i_cull_job* job, uint32_t column)
 
 /* ---- tests of candidates --------------------------------------------------------------------- */
 
-/* Arrays are as long as whole vectors, so that no loop has a rest to be done one by one. */
-#define HDRP_I_CULL_WHOLE(count) (((count) + 7u) & ~7u)
-
 /* Depths are looked up with functions that may be contracted elsewhere: hdrp_cull_slice. */
 #define HDRP_I_CULL_DEPTH_MARGIN 2e-6f
 
-static void hdrp_i_cull_test_bounds(const hdrp_i_cull_job* job, float lo, float hi)
+/* The depths of a candidate that are among those of a rectangle; none where the rectangles do not
+ * overlap. */
+HDRP_FN hdrp_cull_interval hdrp_i_cull_overlap(const hdrp_i_cull_scratch* s, uint32_t m,
+                                               hdrp_v4 rect_px, hdrp_cull_interval seen)
 {
-    const hdrp_i_cull_scratch* s = &job->s;
-    const float* left = s->left;
-    const float* upper = s->upper;
-    const float* right = s->right;
-    const float* lower = s->lower;
-    const float* nearest = s->nearest;
-    const float* farthest = s->farthest;
-    uint32_t* overlaps = s->overlaps;
-    float x0 = (float)(int)job->x0, y0 = (float)(int)job->y0;
-    float x1 = (float)(int)job->x1, y1 = (float)(int)job->y1;
+    /* A difference is positive where there is a gap. */
+    float x = hdrp_max(s->left[m] - rect_px.z, rect_px.x - s->right[m]);
+    float y = hdrp_max(s->upper[m] - rect_px.w, rect_px.y - s->lower[m]);
+    seen.nearest = hdrp_max(s->nearest[m], seen.nearest);
+    seen.farthest = hdrp_min(s->farthest[m], seen.farthest);
+    seen.nearest = hdrp_max(x, y) <= 0.0f ? seen.nearest : HDRP_FLT_MAX;
+    return seen;
+}
+
+/* What is left of the depths of a candidate inside its ball. */
+HDRP_FN hdrp_cull_interval hdrp_i_cull_in_ball(const hdrp_i_cull_scratch* s, uint32_t m,
+                                               hdrp_cull_interval depths, hdrp_cull_tile tile,
+                                               float orthographic)
+{
+    hdrp_v4 ball = hdrp_v4_make(s->x[m], s->y[m], s->z[m], s->radius[m]);
+    hdrp_cull_interval r = hdrp_cull_interval_ball(tile, ball, orthographic);
+    depths.nearest = hdrp_max(r.nearest * (1.0f - HDRP_I_CULL_DEPTH_MARGIN), depths.nearest);
+    depths.farthest = hdrp_min(r.farthest * (1.0f + HDRP_I_CULL_DEPTH_MARGIN), depths.farthest);
+    return depths;
+}
+
+/* The depths of each candidate in a tile: none where nearest > farthest. */
+static void hdrp_i_cull_test_bounds(const hdrp_i_cull_job* job, hdrp_cull_interval seen)
+{
+    const hdrp_i_cull_scratch s = job->s; /* whose pointers no store can change */
+    hdrp_v4 rect_px = job->rect_px;
     uint32_t count = HDRP_I_CULL_WHOLE(job->candidate_end[HDRP_CULL_CATEGORY_COUNT - 1u]), m;
-    lo *= 1.0f - HDRP_I_CULL_DEPTH_MARGIN;
-    hi *= 1.0f + HDRP_I_CULL_DEPTH_MARGIN;
     HDRP_I_CULL_INDEPENDENT
     for (m = 0u; m < count; ++m) {
-        /* Each difference is positive where there is a gap. */
-        float x = hdrp_max(left[m] - x1, x0 - right[m]);
-        float y = hdrp_max(upper[m] - y1, y0 - lower[m]);
-        float z = hdrp_max(nearest[m] - hi, lo - farthest[m]);
-        overlaps[m] = hdrp_max(hdrp_max(x, y), z) <= 0.0f ? 1u : 0u;
+        hdrp_cull_interval r = hdrp_i_cull_overlap(&s, m, rect_px, seen);
+        s.tile_nearest[m] = r.nearest;
+        s.tile_farthest[m] = r.farthest;
     }
 }
 
-/* The candidates whose bounds overlap the rectangle and the depths become hits. */
-static void hdrp_i_cull_select(hdrp_i_cull_job* job, float lo, float hi)
+/* The same inside their balls. A constant projection leaves a loop without the other in it. */
+HDRP_FN void hdrp_i_cull_test_balls(const hdrp_i_cull_job* job, hdrp_cull_tile tile,
+                                    hdrp_cull_interval seen, float orthographic)
 {
-    hdrp_i_cull_scratch* s = &job->s;
+    const hdrp_i_cull_scratch s = job->s;
+    hdrp_v4 rect_px = job->rect_px;
+    uint32_t count = HDRP_I_CULL_WHOLE(job->candidate_end[HDRP_CULL_CATEGORY_COUNT - 1u]), m;
+    HDRP_I_CULL_INDEPENDENT
+    for (m = 0u; m < count; ++m) {
+        hdrp_cull_interval r = hdrp_i_cull_overlap(&s, m, rect_px, seen);
+        r = hdrp_i_cull_in_ball(&s, m, r, tile, orthographic);
+        s.tile_nearest[m] = r.nearest;
+        s.tile_farthest[m] = r.farthest;
+    }
+}
+
+/* The candidates that have depths in the tile become hits. */
+static void hdrp_i_cull_select(hdrp_i_cull_job* job)
+{
+    const hdrp_i_cull_scratch s = job->s;
     uint32_t m = 0u, n = 0u, category;
-    hdrp_i_cull_test_bounds(job, lo, hi);
     for (category = 0u; category < HDRP_CULL_CATEGORY_COUNT; ++category) {
         for (; m < job->candidate_end[category]; ++m) {
-            s->keep[n] = (uint16_t)m;
-            n += s->overlaps[m];
+            /* Written in any case: whether it stays is hard to predict. */
+            float nearest = s.tile_nearest[m], farthest = s.tile_farthest[m];
+            s.hit[n] = s.candidate[m];
+            s.origin[n] = (uint16_t)m;
+            s.hit_nearest[n] = nearest;
+            s.hit_farthest[n] = farthest;
+            n += nearest <= farthest ? 1u : 0u;
         }
         job->hit_end[category] = n;
     }
     job->hit_count = n;
-    for (n = 0u; n < job->hit_count; ++n) {
-        hdrp_v4 ball;
-        m = s->keep[n];
-        s->hit[n] = s->candidate[m];
-        ball = job->set->balls[s->hit[n]];
-        s->x[n] = ball.x;
-        s->y[n] = ball.y;
-        s->z[n] = ball.z;
-        s->radius[n] = ball.w;
-        s->hit_nearest[n] = hdrp_max(s->nearest[m], lo);
-        s->hit_farthest[n] = hdrp_min(s->farthest[m], hi);
-    }
-    for (; n < HDRP_I_CULL_WHOLE(job->hit_count); ++n) {
-        s->x[n] = s->y[n] = s->z[n] = s->radius[n] = 0.0f;
-        s->hit_nearest[n] = s->hit_farthest[n] = 0.0f;
-    }
-}
-
-static void hdrp_i_cull_test_balls(const hdrp_i_cull_job* job, hdrp_cull_tile tile,
-                                   float orthographic)
-{
-    const float* x = job->s.x;
-    const float* y = job->s.y;
-    const float* z = job->s.z;
-    const float* radius = job->s.radius;
-    float* nearest = job->s.hit_nearest;
-    float* farthest = job->s.hit_farthest;
-    uint32_t count = HDRP_I_CULL_WHOLE(job->hit_count), h;
-    /* The constant last argument leaves one loop without the other projection in it. */
-    if (orthographic > 0.0f) {
-        HDRP_I_CULL_INDEPENDENT
-        for (h = 0u; h < count; ++h) {
-            hdrp_cull_interval r =
-                hdrp_cull_interval_ball(tile, hdrp_v4_make(x[h], y[h], z[h], radius[h]), 1.0f);
-            nearest[h] = hdrp_max(r.nearest * (1.0f - HDRP_I_CULL_DEPTH_MARGIN), nearest[h]);
-            farthest[h] = hdrp_min(r.farthest * (1.0f + HDRP_I_CULL_DEPTH_MARGIN), farthest[h]);
-        }
-    } else {
-        HDRP_I_CULL_INDEPENDENT
-        for (h = 0u; h < count; ++h) {
-            hdrp_cull_interval r =
-                hdrp_cull_interval_ball(tile, hdrp_v4_make(x[h], y[h], z[h], radius[h]), 0.0f);
-            nearest[h] = hdrp_max(r.nearest * (1.0f - HDRP_I_CULL_DEPTH_MARGIN), nearest[h]);
-            farthest[h] = hdrp_min(r.farthest * (1.0f + HDRP_I_CULL_DEPTH_MARGIN), farthest[h]);
-        }
-    }
 }
 
 /* Shortens the interval of a hit by the planes of its shape, all of them at once. */
-static void hdrp_i_cull_test_planes(const hdrp_i_cull_job* job, uint32_t h, hdrp_cull_tile tile,
-                                    float orthographic)
+static hdrp_cull_interval hdrp_i_cull_in_planes(const hdrp_i_cull_job* job, uint32_t i,
+                                                hdrp_cull_interval depths, hdrp_cull_tile tile,
+                                                float orthographic)
 {
     float nearest[HDRP_CULL_PLANES_STRIDE], farthest[HDRP_CULL_PLANES_STRIDE];
-    const float* x = job->set->planes + (size_t)job->s.hit[h] * 4u * HDRP_CULL_PLANES_STRIDE;
+    const float* x = job->set->planes + (size_t)i * 4u * HDRP_CULL_PLANES_STRIDE;
     const float* y = x + HDRP_CULL_PLANES_STRIDE;
     const float* z = y + HDRP_CULL_PLANES_STRIDE;
     const float* w = z + HDRP_CULL_PLANES_STRIDE;
@@ -1313,43 +1052,29 @@ static void hdrp_i_cull_test_planes(const hdrp_i_cull_job* job, uint32_t h, hdrp
             farthest[k] = hdrp_min(farthest[k + half_count], farthest[k]);
         }
     }
-    job->s.hit_nearest[h] =
-        hdrp_max(nearest[0] * (1.0f - HDRP_I_CULL_DEPTH_MARGIN), job->s.hit_nearest[h]);
-    job->s.hit_farthest[h] =
-        hdrp_min(farthest[0] * (1.0f + HDRP_I_CULL_DEPTH_MARGIN), job->s.hit_farthest[h]);
+    depths.nearest = hdrp_max(nearest[0] * (1.0f - HDRP_I_CULL_DEPTH_MARGIN), depths.nearest);
+    depths.farthest = hdrp_min(farthest[0] * (1.0f + HDRP_I_CULL_DEPTH_MARGIN), depths.farthest);
+    return depths;
 }
 
-/* Moves a hit to another place. */
-static void hdrp_i_cull_move(hdrp_i_cull_scratch* s, uint32_t from, uint32_t to)
+/* Drops the hits whose planes keep them out of the tile. */
+static void hdrp_i_cull_test_planes(hdrp_i_cull_job* job, hdrp_cull_tile tile, float orthographic)
 {
-    s->hit[to] = s->hit[from];
-    s->x[to] = s->x[from];
-    s->y[to] = s->y[from];
-    s->z[to] = s->z[from];
-    s->radius[to] = s->radius[from];
-    s->hit_nearest[to] = s->hit_nearest[from];
-    s->hit_farthest[to] = s->hit_farthest[from];
-    s->hit_first[to] = s->hit_first[from];
-    s->hit_last[to] = s->hit_last[from];
-    s->blocks[to] = s->blocks[from];
-    if (s->mask_words > 0u) {
-        memcpy(s->masks + to * s->mask_words, s->masks + from * s->mask_words,
-               s->mask_words * sizeof *s->masks);
-    }
-}
-
-/* Keeps the hits whose mark is not 0. */
-static void hdrp_i_cull_keep(hdrp_i_cull_job* job, const uint16_t* marks)
-{
+    const hdrp_i_cull_scratch s = job->s;
     uint32_t h = 0u, n = 0u, category;
     for (category = 0u; category < HDRP_CULL_CATEGORY_COUNT; ++category) {
         for (; h < job->hit_end[category]; ++h) {
-            if (marks[h] != 0u) {
-                if (n != h) {
-                    hdrp_i_cull_move(&job->s, h, n);
-                }
-                ++n;
+            hdrp_cull_interval r;
+            r.nearest = s.hit_nearest[h];
+            r.farthest = s.hit_farthest[h];
+            if (!s.is_ball[s.origin[h]]) {
+                r = hdrp_i_cull_in_planes(job, s.hit[h], r, tile, orthographic);
             }
+            s.hit[n] = s.hit[h];
+            s.origin[n] = s.origin[h];
+            s.hit_nearest[n] = r.nearest;
+            s.hit_farthest[n] = r.farthest;
+            n += r.nearest <= r.farthest ? 1u : 0u;
         }
         job->hit_end[category] = n;
     }
@@ -1362,23 +1087,21 @@ static void hdrp_i_cull_find(hdrp_i_cull_job* job, hdrp_cull_tile tile, float lo
                              int pixels)
 {
     float orthographic = job->lists->camera.forward_orthographic.w;
-    uint32_t h;
-    hdrp_i_cull_select(job, lo, hi);
-    if (job->lists->desc.flags & HDRP_CULL_FAST) {
-        return;
+    uint32_t fast = job->lists->desc.flags & HDRP_CULL_FAST;
+    hdrp_cull_interval seen;
+    seen.nearest = lo * (1.0f - HDRP_I_CULL_DEPTH_MARGIN);
+    seen.farthest = hi * (1.0f + HDRP_I_CULL_DEPTH_MARGIN);
+    if (fast || pixels) {
+        hdrp_i_cull_test_bounds(job, seen);
+    } else if (orthographic > 0.0f) {
+        hdrp_i_cull_test_balls(job, tile, seen, 1.0f);
+    } else {
+        hdrp_i_cull_test_balls(job, tile, seen, 0.0f);
     }
-    if (!pixels) {
-        hdrp_i_cull_test_balls(job, tile, orthographic);
+    hdrp_i_cull_select(job);
+    if (!fast && !job->all_balls) {
+        hdrp_i_cull_test_planes(job, tile, orthographic);
     }
-    for (h = 0u; h < job->hit_count; ++h) {
-        int there = job->s.hit_nearest[h] <= job->s.hit_farthest[h];
-        if (there && !hdrp_i_cull_is_ball(job->set, job->s.hit[h])) {
-            hdrp_i_cull_test_planes(job, h, tile, orthographic);
-            there = job->s.hit_nearest[h] <= job->s.hit_farthest[h];
-        }
-        job->s.keep[h] = there ? 1u : 0u;
-    }
-    hdrp_i_cull_keep(job, job->s.keep);
 }
 
 /* ---- pixels ---------------------------------------------------------------------------------- */
@@ -1438,6 +1161,16 @@ static void hdrp_i_cull_reduce_band(const hdrp_i_cull_scratch* s, uint32_t width
     }
 }
 
+/* Reads a row of pixels of a tile. */
+HDRP_FN void hdrp_i_cull_read_row(const hdrp_i_cull_job* job, uint32_t y, uint32_t columns)
+{
+    const hdrp_i_cull_scratch s = job->s;
+    hdrp_i_cull_read(job->depth, &job->lists->camera,
+                     job->depth->texels + (job->y0 + y) * job->depth->row_stride + job->x0, columns,
+                     s.row);
+    hdrp_i_cull_widen(s.row, columns, s.column_nearest, s.column_farthest);
+}
+
 /* Depths of a tile. */
 static void hdrp_i_cull_read_depth(const hdrp_i_cull_job* job, hdrp_i_cull_ranges* ranges)
 {
@@ -1454,12 +1187,10 @@ static void hdrp_i_cull_read_depth(const hdrp_i_cull_job* job, hdrp_i_cull_range
             s->column_farthest[i] = -1.0f;
         }
         for (y = band * height; y < (band + 1u) * height; ++y) {
-            if (y < rows) {
-                hdrp_i_cull_read(job->depth, &job->lists->camera,
-                                 job->depth->texels + (job->y0 + y) * job->depth->row_stride +
-                                     job->x0,
-                                 columns, s->row);
-                hdrp_i_cull_widen(s->row, columns, s->column_nearest, s->column_farthest);
+            if (y < rows && columns == 16u) { /* as in most tiles: loops of known length */
+                hdrp_i_cull_read_row(job, y, 16u);
+            } else if (y < rows) {
+                hdrp_i_cull_read_row(job, y, columns);
             } else {
                 memset(s->row, 0xff, 4u * width * sizeof *s->row); /* NaN: not seen either */
             }
@@ -1560,22 +1291,52 @@ static uint32_t hdrp_i_cull_ball_in_blocks(const hdrp_i_cull_boxes* b, hdrp_v4 b
     return any;
 }
 
-/* Marks the hits whose ball contains a box: its farthest corner. */
-static void hdrp_i_cull_balls_around_box(const hdrp_i_cull_job* job, const hdrp_i_cull_boxes* b)
+HDRP_FN float hdrp_i_cull_distance2(hdrp_v3 a, hdrp_v3 b)
 {
-    const float* x = job->s.x;
-    const float* y = job->s.y;
-    const float* z = job->s.z;
-    const float* radius = job->s.radius;
-    uint32_t* around = job->s.overlaps;
-    float x0 = b->x0[0], x1 = b->x1[0], y0 = b->y0[0], y1 = b->y1[0], z0 = b->z0[0], z1 = b->z1[0];
-    uint32_t count = HDRP_I_CULL_WHOLE(job->hit_count), h;
+    float x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
+    return x * x + y * y + z * z;
+}
+
+/* Marks the candidates whose ball contains all that a tile shows: the farthest corner of the box
+ * around it. */
+static void hdrp_i_cull_balls_around_tile(const hdrp_i_cull_job* job, const hdrp_cull_tile* tile,
+                                          hdrp_v4 info)
+{
+    const hdrp_i_cull_scratch s = job->s;
+    float flat = job->lists->camera.forward_orthographic.w;
+    float k0 = flat > 0.0f ? 1.0f : info.x, k1 = flat > 0.0f ? 1.0f : info.y;
+    hdrp_v4 w = tile->window;
+    float x0 = hdrp_min(w.x * k0, w.x * k1), x1 = hdrp_max(w.y * k0, w.y * k1);
+    float y0 = hdrp_min(w.z * k0, w.z * k1), y1 = hdrp_max(w.w * k0, w.w * k1);
+    uint32_t count = HDRP_I_CULL_WHOLE(job->candidate_end[HDRP_CULL_CATEGORY_COUNT - 1u]), m;
     HDRP_I_CULL_INDEPENDENT
-    for (h = 0u; h < count; ++h) {
-        float dx = hdrp_max(x[h] - x0, x1 - x[h]);
-        float dy = hdrp_max(y[h] - y0, y1 - y[h]);
-        float dz = hdrp_max(z[h] - z0, z1 - z[h]);
-        around[h] = dx * dx + dy * dy + dz * dz <= radius[h] * radius[h] ? 1u : 0u;
+    for (m = 0u; m < count; ++m) {
+        float dx = hdrp_max(s.x[m] - x0, x1 - s.x[m]);
+        float dy = hdrp_max(s.y[m] - y0, y1 - s.y[m]);
+        float dz = hdrp_max(s.z[m] - info.x, info.y - s.z[m]);
+        s.around[m] = dx * dx + dy * dy + dz * dz <= s.radius[m] * s.radius[m] ? 1u : 0u;
+    }
+}
+
+/* The same for those whose ball contains one of four pixels, which most do that reach any. */
+static void hdrp_i_cull_balls_around_pixels(const hdrp_i_cull_job* job)
+{
+    const hdrp_i_cull_scratch s = job->s;
+    uint32_t width = job->lists->grid.cells.z, height = job->lists->grid.cells.w;
+    uint32_t count = HDRP_I_CULL_WHOLE(job->candidate_end[HDRP_CULL_CATEGORY_COUNT - 1u]), m, k;
+    hdrp_v3 pixels[4];
+    for (k = 0u; k < 4u; ++k) { /* in the middle of the blocks at the corners */
+        uint32_t at = ((k / 2u * 12u + k % 2u * 3u) * height + height / 2u) * width + width / 2u;
+        float far_m = s.pixel_z[at] >= 0.0f ? 0.0f : 2.0f * HDRP_LIGHT_RANGE_INFINITE; /* sky */
+        pixels[k] = hdrp_v3_make(s.pixel_x[at] + far_m, s.pixel_y[at], s.pixel_z[at]);
+    }
+    HDRP_I_CULL_INDEPENDENT
+    for (m = 0u; m < count; ++m) {
+        hdrp_v3 c = hdrp_v3_make(s.x[m], s.y[m], s.z[m]);
+        float a = hdrp_i_cull_distance2(c, pixels[0]), b = hdrp_i_cull_distance2(c, pixels[1]);
+        float d = hdrp_i_cull_distance2(c, pixels[2]), e = hdrp_i_cull_distance2(c, pixels[3]);
+        float nearest2 = hdrp_min(hdrp_min(a, b), hdrp_min(d, e));
+        s.around[m] = (uint8_t)(s.around[m] | (nearest2 <= s.radius[m] * s.radius[m] ? 1u : 0u));
     }
 }
 
@@ -1618,10 +1379,9 @@ static uint32_t hdrp_i_cull_reach(const hdrp_i_cull_scratch* s, const hdrp_cull_
 }
 
 /* Notes the pixels of a block that a hit reaches: those that were found, or all. */
-static void hdrp_i_cull_mask_block(const hdrp_i_cull_scratch* s, uint32_t h, uint32_t block,
+static void hdrp_i_cull_mask_block(const hdrp_i_cull_scratch* s, uint32_t* mask, uint32_t block,
                                    uint32_t of_block, int found)
 {
-    uint32_t* mask = s->masks + h * s->mask_words;
     uint32_t at = block * of_block, first, i;
     for (first = 0u; first < of_block; first += i, at += i) {
         uint32_t room = 32u - at % 32u, left = of_block - first, word = 0u;
@@ -1634,19 +1394,27 @@ static void hdrp_i_cull_mask_block(const hdrp_i_cull_scratch* s, uint32_t h, uin
     }
 }
 
-/* Which blocks of a tile a hit reaches; without HDRP_CULL_BLOCKS all where it reaches one. */
-static uint32_t hdrp_i_cull_blocks_reached(const hdrp_i_cull_job* job, uint32_t h,
-                                           const hdrp_i_cull_boxes* boxes)
+static void hdrp_i_cull_fill_mask(uint32_t* mask, size_t words, uint32_t word)
+{
+    size_t i;
+    for (i = 0u; i < words; ++i) {
+        mask[i] = word;
+    }
+}
+
+/* Which blocks of a tile a candidate reaches; without HDRP_CULL_BLOCKS all where it reaches one. */
+static uint32_t hdrp_i_cull_blocks_reached(const hdrp_i_cull_job* job, uint32_t m,
+                                           const hdrp_i_cull_boxes* boxes, uint32_t* mask)
 {
     const hdrp_i_cull_scratch* s = &job->s;
-    const hdrp_cull_shape* shape = &job->set->shapes[s->hit[h]];
+    const hdrp_cull_shape* shape = &job->set->shapes[s->candidate[m]];
     uint32_t of_block = job->lists->grid.cells.z * job->lists->grid.cells.w;
     uint32_t found[HDRP_I_CULL_BLOCKS], bits = 0u, block;
     /* Inside its ball is inside a shape only if it is one. */
-    uint32_t sure = hdrp_i_cull_is_ball(job->set, s->hit[h]) ? 2u : 0u;
+    uint32_t sure = s->is_ball[m] ? 2u : 0u;
     int all = (job->lists->desc.flags & HDRP_CULL_BLOCKS) != 0u;
     uint32_t any = hdrp_i_cull_ball_in_blocks(
-        boxes, hdrp_v4_make(s->x[h], s->y[h], s->z[h], s->radius[h]), found);
+        boxes, hdrp_v4_make(s->x[m], s->y[m], s->z[m], s->radius[m]), found);
     if (any == 0u || (!all && (any & sure))) {
         return any == 0u ? 0u : 0xffffu;
     }
@@ -1656,44 +1424,53 @@ static uint32_t hdrp_i_cull_blocks_reached(const hdrp_i_cull_job* job, uint32_t 
             reached = hdrp_i_cull_reach(s, shape, block * of_block, of_block);
         }
         if (reached && s->mask_words > 0u) {
-            hdrp_i_cull_mask_block(s, h, block, of_block, !inside);
+            hdrp_i_cull_mask_block(s, mask, block, of_block, !inside);
         }
         bits |= reached << block;
     }
     return all || bits == 0u ? bits : 0xffffu;
 }
 
-/* Marks which blocks each hit reaches, and drops those that reach none. Pixels are looked at only
- * where a hit does not contain the whole of what the tile shows. */
+/* Reads the pixels of a tile and what bounds them. */
+static void hdrp_i_cull_prepare_pixels(const hdrp_i_cull_job* job, const hdrp_cull_tile* tile,
+                                       hdrp_i_cull_boxes* boxes)
+{
+    hdrp_i_cull_ranges ranges;
+    hdrp_i_cull_read_pixels(job, &ranges);
+    hdrp_i_cull_box_blocks(job, tile, &ranges, boxes);
+    if (!(job->lists->desc.flags & HDRP_CULL_BLOCKS)) { /* one pixel decides for all blocks */
+        hdrp_i_cull_balls_around_pixels(job);
+    }
+}
+
+/* The blocks that each hit reaches; those that reach none are dropped. Pixels are read only where a
+ * hit does not contain the whole of what the tile shows. */
 static void hdrp_i_cull_test_pixels(hdrp_i_cull_job* job, hdrp_cull_tile tile, hdrp_v4 info)
 {
-    hdrp_i_cull_scratch* s = &job->s;
-    hdrp_i_cull_boxes whole, boxes;
-    hdrp_i_cull_ranges ranges;
-    float window[4];
-    uint32_t read = 0u, h;
-    window[0] = tile.window.x;
-    window[1] = tile.window.y;
-    window[2] = tile.window.z;
-    window[3] = tile.window.w;
-    hdrp_i_cull_set_box(&whole, 0u, window, info.x, info.y,
-                        job->lists->camera.forward_orthographic.w);
-    hdrp_i_cull_balls_around_box(job, &whole);
-    memset(s->masks, 0, job->hit_count * s->mask_words * sizeof *s->masks);
-    for (h = 0u; h < job->hit_count; ++h) {
-        if (s->overlaps[h] && hdrp_i_cull_is_ball(job->set, s->hit[h])) {
-            if (s->mask_words > 0u) {
-                memset(s->masks + h * s->mask_words, 0xff, s->mask_words * sizeof *s->masks);
+    const hdrp_i_cull_scratch s = job->s;
+    hdrp_i_cull_boxes boxes;
+    uint32_t prepared = 0u, h = 0u, n = 0u, category;
+    hdrp_i_cull_balls_around_tile(job, &tile, info);
+    for (category = 0u; category < HDRP_CULL_CATEGORY_COUNT; ++category) {
+        for (; h < job->hit_end[category]; ++h) {
+            uint32_t m = s.origin[h], blocks = 0xffffu;
+            uint32_t* mask = s.masks + n * s.mask_words;
+            if (!(s.around[m] & s.is_ball[m]) && prepared++ == 0u) {
+                hdrp_i_cull_prepare_pixels(job, &tile, &boxes);
             }
-            continue;
+            if (s.around[m] & s.is_ball[m]) {
+                hdrp_i_cull_fill_mask(mask, s.mask_words, 0xffffffffu);
+            } else {
+                hdrp_i_cull_fill_mask(mask, s.mask_words, 0u);
+                blocks = hdrp_i_cull_blocks_reached(job, m, &boxes, mask);
+            }
+            s.hit[n] = s.hit[h];
+            s.blocks[n] = (uint16_t)blocks;
+            n += blocks != 0u ? 1u : 0u;
         }
-        if (read++ == 0u) {
-            hdrp_i_cull_read_pixels(job, &ranges);
-            hdrp_i_cull_box_blocks(job, &tile, &ranges, &boxes);
-        }
-        s->blocks[h] = (uint16_t)hdrp_i_cull_blocks_reached(job, h, &boxes);
+        job->hit_end[category] = n;
     }
-    hdrp_i_cull_keep(job, s->blocks);
+    job->hit_count = n;
 }
 
 /* ---- limits ---------------------------------------------------------------------------------- */
@@ -1741,6 +1518,26 @@ static uint64_t hdrp_i_cull_needed(const hdrp_i_cull_job* job)
     return needed;
 }
 
+/* Keeps the hits that are marked. */
+static void hdrp_i_cull_keep(hdrp_i_cull_job* job)
+{
+    const hdrp_i_cull_scratch* s = &job->s;
+    uint32_t h = 0u, n = 0u, category;
+    for (category = 0u; category < HDRP_CULL_CATEGORY_COUNT; ++category) {
+        for (; h < job->hit_end[category]; ++h) {
+            s->hit[n] = s->hit[h];
+            s->hit_first[n] = s->hit_first[h];
+            s->hit_last[n] = s->hit_last[h];
+            s->blocks[n] = s->blocks[h];
+            memmove(s->masks + n * s->mask_words, s->masks + h * s->mask_words,
+                    s->mask_words * sizeof *s->masks);
+            n += s->keep[h];
+        }
+        job->hit_end[category] = n;
+    }
+    job->hit_count = n;
+}
+
 /* Leaves out what does not fit; returns how many. The order does not depend on anything but the
  * shapes, so that the same ones are left out in the next frame. */
 static uint32_t hdrp_i_cull_limit(hdrp_i_cull_job* job)
@@ -1765,7 +1562,7 @@ static uint32_t hdrp_i_cull_limit(hdrp_i_cull_job* job)
         dropped += fits ? 0u : 1u;
         s->keep[at] = (uint16_t)fits;
     }
-    hdrp_i_cull_keep(job, s->keep);
+    hdrp_i_cull_keep(job);
     return dropped;
 }
 
@@ -1779,14 +1576,15 @@ static void hdrp_i_cull_slices(hdrp_i_cull_job* job, float scale)
     uint8_t* first = job->s.hit_first;
     uint8_t* last = job->s.hit_last;
     hdrp_cull_grid grid = job->lists->grid;
-    uint32_t h;
+    uint32_t h, count;
     if (job->lists->desc.slice_count == 1u) {
         memset(first, 0, job->hit_count);
         memset(last, 0, job->hit_count);
         return;
     }
+    count = HDRP_I_CULL_WHOLE(job->hit_count);
     HDRP_I_CULL_INDEPENDENT
-    for (h = 0u; h < job->hit_count; ++h) {
+    for (h = 0u; h < count; ++h) {
         first[h] = (uint8_t)hdrp_cull_slice(grid, scale, nearest[h]);
         last[h] = (uint8_t)hdrp_cull_slice(grid, scale, farthest[h]);
     }
@@ -1820,15 +1618,14 @@ static uint32_t hdrp_i_cull_sum_of_four(uint64_t counts)
     return (uint32_t)(counts * ((uint64_t)0x00010001u << 32 | 0x00010001u) >> 48);
 }
 
-/* Writes the cells and the entries of a tile. */
-static void hdrp_i_cull_write(hdrp_i_cull_job* job, uint32_t tile, uint32_t dropped)
+/* The cells and the entries of a tile of several slices. */
+static void hdrp_i_cull_write_slices(const hdrp_i_cull_job* job, hdrp_u32x4* cells, uint32_t at,
+                                     uint32_t dropped)
 {
     uint64_t counts[HDRP_CULL_SLICES_MAX + 1u];
     uint32_t next[HDRP_CULL_SLICES_MAX];
-    hdrp_cull_lists* lists = job->lists;
-    uint32_t slices = lists->desc.slice_count, at = tile * lists->desc.entry_capacity, k, h;
-    hdrp_u32x4* cells = lists->cells + (size_t)tile * slices;
-    uint32_t* entries = lists->entries;
+    uint32_t* entries = job->lists->entries;
+    uint32_t slices = job->lists->desc.slice_count, k, h;
     hdrp_i_cull_count_slices(job, counts);
     for (k = 0u; k < slices; ++k) {
         cells[k] = hdrp_u32x4_make(at, (uint32_t)counts[k], (uint32_t)(counts[k] >> 32), dropped);
@@ -1842,9 +1639,37 @@ static void hdrp_i_cull_write(hdrp_i_cull_job* job, uint32_t tile, uint32_t drop
             entries[next[k]++] = entry;
         }
     }
-    if (lists->masks && job->hit_count > 0u) { /* one slice: hits and entries are in one order */
-        memcpy(lists->masks + cells[0].x * job->s.mask_words, job->s.masks,
-               job->hit_count * job->s.mask_words * sizeof *lists->masks);
+}
+
+/* The same for one slice: hits and entries are in one order. */
+static void hdrp_i_cull_write_one(const hdrp_i_cull_job* job, hdrp_u32x4* cell, uint32_t at,
+                                  uint32_t dropped)
+{
+    const hdrp_i_cull_scratch s = job->s;
+    const uint32_t* end = job->hit_end;
+    uint32_t* entries = job->lists->entries + at;
+    uint32_t* masks = job->lists->masks;
+    uint32_t h;
+    *cell = hdrp_u32x4_make(at, end[0] | (end[1] - end[0]) << 16,
+                            (end[2] - end[1]) | (end[3] - end[2]) << 16, dropped);
+    HDRP_I_CULL_INDEPENDENT
+    for (h = 0u; h < job->hit_count; ++h) {
+        entries[h] = (uint32_t)s.hit[h] | (uint32_t)s.blocks[h] << 16;
+    }
+    if (masks && job->hit_count > 0u) {
+        memcpy(masks + at * s.mask_words, s.masks, job->hit_count * s.mask_words * sizeof *s.masks);
+    }
+}
+
+static void hdrp_i_cull_write(hdrp_i_cull_job* job, uint32_t tile, uint32_t dropped)
+{
+    hdrp_cull_lists* lists = job->lists;
+    uint32_t slices = lists->desc.slice_count, at = tile * lists->desc.entry_capacity;
+    hdrp_u32x4* cells = lists->cells + (size_t)tile * slices;
+    if (slices == 1u) {
+        hdrp_i_cull_write_one(job, cells, at, dropped);
+    } else {
+        hdrp_i_cull_write_slices(job, cells, at, dropped);
     }
     lists->tile_dropped[tile] = dropped;
 }
@@ -1859,15 +1684,16 @@ static hdrp_cull_tile hdrp_i_cull_set_rectangle(hdrp_i_cull_job* job, uint32_t c
     job->y0 = row * lists->grid.tiles.y;
     job->x1 = x1 < lists->desc.width_px ? x1 : lists->desc.width_px;
     job->y1 = y1 < lists->desc.height_px ? y1 : lists->desc.height_px;
-    return hdrp_cull_tile_make(lists->camera, (float)job->x0, (float)job->y0, (float)job->x1,
-                               (float)job->y1, (float)lists->desc.width_px,
+    job->rect_px = hdrp_v4_make((float)job->x0, (float)job->y0, (float)job->x1, (float)job->y1);
+    return hdrp_cull_tile_make(lists->camera, job->rect_px.x, job->rect_px.y, job->rect_px.z,
+                               job->rect_px.w, (float)lists->desc.width_px,
                                (float)lists->desc.height_px);
 }
 
 static void hdrp_i_cull_build_tile(hdrp_i_cull_job* job, uint32_t column, uint32_t row)
 {
     hdrp_cull_lists* lists = job->lists;
-    uint32_t tile = row * lists->grid.tiles.z + column, h;
+    uint32_t tile = row * lists->grid.tiles.z + column;
     hdrp_v4 info = lists->tiles[tile];
     hdrp_cull_tile t = hdrp_i_cull_set_rectangle(job, column, row, 1u, 1u);
     if (lists->desc.slice_count == 1u) {
@@ -1876,13 +1702,12 @@ static void hdrp_i_cull_build_tile(hdrp_i_cull_job* job, uint32_t column, uint32
     } else {
         hdrp_i_cull_find(job, t, lists->camera.eye_near.w, lists->camera.right_far.w, 0);
     }
-    hdrp_i_cull_slices(job, info.z);
-    for (h = 0u; h < job->hit_count; ++h) {
-        job->s.blocks[h] = 0xffffu;
-    }
     if (lists->desc.flags & HDRP_CULL_PIXELS) {
         hdrp_i_cull_test_pixels(job, t, info);
+    } else {
+        memset(job->s.blocks, 0xff, job->hit_count * sizeof *job->s.blocks);
     }
+    hdrp_i_cull_slices(job, info.z);
     hdrp_i_cull_write(job, tile, hdrp_i_cull_limit(job));
 }
 
@@ -1938,7 +1763,7 @@ HDRP_API hdrp_result hdrp_cull_build(hdrp_cull_lists* lists, const hdrp_cull_set
     hdrp_i_cull_job job;
     hdrp_result r;
     size_t needed;
-    uint32_t row;
+    uint32_t row, i;
     if (!lists || !set || ((lists->desc.flags & HDRP_CULL_PIXELS) && (!depth || !depth->texels))) {
         return HDRP_ERROR_NULL_POINTER;
     }
@@ -1962,6 +1787,9 @@ HDRP_API hdrp_result hdrp_cull_build(hdrp_cull_lists* lists, const hdrp_cull_set
     job.depth = depth;
     job.coarse_columns = hdrp_i_cull_coarse_tiles(lists->desc.tile_width_px);
     job.coarse_rows = hdrp_i_cull_coarse_tiles(lists->desc.tile_height_px);
+    for (i = 0u; i < set->count; ++i) {
+        job.present |= 1u << hdrp_i_cull_category(set, i);
+    }
     if (lists->desc.flags & HDRP_CULL_PIXELS) {
         hdrp_i_cull_place_pixels(&job);
     }

@@ -895,8 +895,10 @@ HDRP_FN hdrp_cull_interval hdrp_i_cull_corner(hdrp_cull_interval r, hdrp_v4 ball
     float chord2 = (ball.w * ball.w - (x * x + y * y + w * w) * inverse) * inverse;
     float middle = (ball.x * u + ball.y * v + ball.z) * inverse;
     float half_chord = hdrp_sqrt(hdrp_max(chord2, 0.0f));
-    r.nearest = chord2 >= 0.0f ? hdrp_min(middle - half_chord, r.nearest) : r.nearest;
-    r.farthest = chord2 >= 0.0f ? hdrp_max(middle + half_chord, r.farthest) : r.farthest;
+    float begin = chord2 >= 0.0f ? middle - half_chord : HDRP_I_CULL_EMPTY;
+    float end = chord2 >= 0.0f ? middle + half_chord : -HDRP_I_CULL_EMPTY;
+    r.nearest = hdrp_min(begin, r.nearest);
+    r.farthest = hdrp_max(end, r.farthest);
     return r;
 }
 
@@ -912,8 +914,10 @@ HDRP_FN hdrp_cull_interval hdrp_i_cull_side(hdrp_cull_interval r, float x, float
     float half_depth = hdrp_sqrt(hdrp_max(chord2, 0.0f));
     float z0 = middle - half_depth;
     float z1 = middle + half_depth;
-    float lo = chord2 >= 0.0f && v0 * z0 - margin <= y && y <= v1 * z0 + margin ? z0 : r.nearest;
-    float hi = chord2 >= 0.0f && v0 * z1 - margin <= y && y <= v1 * z1 + margin ? z1 : r.farthest;
+    float lo =
+        chord2 >= 0.0f && v0 * z0 - margin <= y && y <= v1 * z0 + margin ? z0 : HDRP_I_CULL_EMPTY;
+    float hi =
+        chord2 >= 0.0f && v0 * z1 - margin <= y && y <= v1 * z1 + margin ? z1 : -HDRP_I_CULL_EMPTY;
     r.nearest = hdrp_min(lo, r.nearest);
     r.farthest = hdrp_max(hi, r.farthest);
     return r;

@@ -233,9 +233,8 @@ static void add_ways(const char* word)
     add_way("clusters 32x32x64", word, 32u, 32u, 64u, 0u);
     add_way("clusters 32x32x64, fast", word, 32u, 32u, 64u, HDRP_CULL_FAST);
     add_way("tiles 16x16", word, 16u, 16u, 1u, HDRP_CULL_PIXELS);
-    add_way("tiles 16x16, fast", word, 16u, 16u, 1u, HDRP_CULL_PIXELS | HDRP_CULL_FAST);
     add_way("tiles 16x16, blocks", word, 16u, 16u, 1u, HDRP_CULL_BLOCKS);
-    add_way("tiles 16x16, blocks, fast", word, 16u, 16u, 1u, HDRP_CULL_BLOCKS | HDRP_CULL_FAST);
+    add_way("tiles 16x16, masks", word, 16u, 16u, 1u, HDRP_CULL_MASKS);
     add_way("tiles 16x16, no pixels", word, 16u, 16u, 1u, 0u);
     add_way("tiles 16x16, no pixels, fast", word, 16u, 16u, 1u, HDRP_CULL_FAST);
 }

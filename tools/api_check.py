@@ -37,9 +37,10 @@ DEPENDENCIES = {
     "pack": "math brdf",
     "area": "math light",
     "cull_volume": "math light",
+    "cull_grid": "math light cull_volume",
     "cull_variant": "math",
     "cull_blocker": "math light cull_volume",
-    "cull": "math light cull_volume cull_blocker cull_variant",
+    "cull": "math light cull_volume cull_grid cull_blocker cull_variant",
     "vol": "math light cull",
     "gpu_vk": "math light brdf oit sss env pack area cull vol",
 }
