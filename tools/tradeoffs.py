@@ -7,7 +7,8 @@ command that the document names, and has a test or a benchmark behind it. --chec
 with what is committed. tools/tradeoffs_charts.py draws the same numbers.
 
 Which functions are alternatives to each other is said in tools/tradeoffs_topics.csv, and what to
-think of them in TOPICS below. Where two CPUs have results, the one that sorts first is shown.
+think of them in TOPICS below. Where two CPUs have results, the one that sorts first is shown; where
+none has those of bench_cull, the page has no section on light culling.
 """
 import csv
 import pathlib
@@ -71,6 +72,22 @@ TOPICS = {
                                "not."),
 }
 
+# What bench_cull writes.
+CULL_WORDS = ("picture", "mix", "way")
+CULL_NUMBERS = ("lights", "project_ms", "depth_ms", "build_ms", "total_ms", "us_per_added_light",
+                "ns_per_pair", "pairs", "pairs_over_exact", "visits_over_true", "two_jobs_speedup")
+CULL_PICTURE, CULL_LIGHTS = "1280x720", "1000"
+CULL_MIXES = ("points", "half", "spots")
+# What we would take of the ways to cull -> for what.
+CULL_TAKE = {
+    "grid 17x9x24": "any surface, fog and particles; no depth needed",
+    "clusters 32x32x64": "the same with fewer lights a pixel, where depth is at hand",
+    "tiles 16x16, blocks": "opaque surfaces whose lights are dear: next to none in vain",
+}
+# Those whose times over the number of lights are shown.
+CULL_MAIN = ("grid 17x9x24", "grid 17x9x24, fast", "grid 17x9x24, naive", "clusters 32x32x64",
+             "tiles 16x16, no pixels", "tiles 16x16", "tiles 16x16, blocks")
+
 
 def rows(path):
     """The rows of a CSV file without its remarks; none when there is no such file."""
@@ -89,6 +106,53 @@ def remarks(path):
 
 def first_result(pattern):
     return next(iter(sorted(RESULTS.glob(pattern))), None)
+
+
+def cull_row_name(row):
+    return f"{row['picture']}, {row['mix']}, {row['lights']} lights, {row['way']}"
+
+
+def cull_at(found, mix, way, lights=CULL_LIGHTS):
+    """The row of a way in the picture that is shown, or None."""
+    return next((row for row in found if (row["picture"], row["mix"], row["way"], row["lights"]) ==
+                 (CULL_PICTURE, mix, way, lights)), None)
+
+
+def cull_fault(path, found):
+    """What is wrong with results of bench_cull, or None. A cell may be empty: not measured."""
+    columns = CULL_WORDS + CULL_NUMBERS
+    if not remarks(path):
+        return "does not begin with a remark that names the machine, as bench/run.py writes"
+    if not found:
+        return "has no rows"
+    for name in (*columns, *filter(None, found[0])):
+        if name not in found[0]:
+            return f"has no column {name}"
+        if name not in columns:
+            return f"has an unknown column {name}"
+    for row in found:
+        if None in row or None in row.values():
+            return f"{row['picture']}, {row['mix']}: a row with more or fewer cells than columns"
+        for name in CULL_NUMBERS:
+            number = r"\d+" if name == "lights" else r"(\d+(\.\d+)?(e[+-]?\d+)?)?"
+            if not re.fullmatch(number, row[name]):
+                return f"{cull_row_name(row)}: {name} is no number but {row[name]!r}"
+    for mix in CULL_MIXES:
+        for way in (*CULL_MAIN, *CULL_TAKE):
+            row = cull_at(found, mix, way)
+            if not row or not (row["build_ms"] and row["total_ms"] and row["visits_over_true"]):
+                return ("has no times or no visits of "
+                        f"{CULL_PICTURE}, {mix}, {CULL_LIGHTS} lights, {way}")
+    return None
+
+
+def cull_rows(path):
+    """The results of bench_cull; ends the program where they are not what it writes."""
+    found = rows(path)
+    fault = path and cull_fault(path, found)
+    if fault:
+        sys.exit(f"tradeoffs: {path.name}: {fault}")
+    return found
 
 
 @dataclass
@@ -116,6 +180,8 @@ class Data:
         self.features_render_file = first_result("features_render_*.csv")
         self.published = rows(ROOT / "tests/published/recorded.csv")
         self.prefilters = rows(first_result("prefilters_cpu_*.csv"))
+        self.cull_file = first_result("cull_cpu_*.csv")
+        self.cull = cull_rows(self.cull_file)
         self.recorded_file = ROOT / "tests/accuracy/recorded.csv"
         self.recorded = {row["id"]: row for row in rows(self.recorded_file)}
         self.half = {row["id"]: row for row in rows(ROOT / "tests/accuracy/half.csv")}
@@ -280,18 +346,101 @@ def skies(data):
     return table(["quantity", "sky", "method", "setting", "worst", "mean", "ms"], lines, "llllrrr")
 
 
+def cull_choice(data):
+    """What to take, for whom, at which price."""
+    heads = ["for", "take"]
+    for mix in ("points", "spots"):
+        heads += [f"{mix}: ms in total", "visited / true"]
+    lines = []
+    for way, purpose in CULL_TAKE.items():
+        found = [cull_at(data.cull, mix, way) for mix in ("points", "spots")]
+        lines.append([purpose, code(way), *(shown(row[column]) for row in found
+                                            for column in ("total_ms", "visits_over_true"))])
+    return table(heads, lines, "llrrrr")
+
+
+def cull_ways(data):
+    """Every way that was measured, for each mix of lights."""
+    heads = ["lights", "way", "build, ms", "in total, ms", "pairs / exact", "visited / true",
+             "two jobs"]
+    lines = [[row["mix"], code(row["way"]),
+              *(shown(row[column]) for column in ("build_ms", "total_ms", "pairs_over_exact",
+                                                  "visits_over_true", "two_jobs_speedup"))]
+             for row in data.cull
+             if (row["picture"], row["lights"]) == (CULL_PICTURE, CULL_LIGHTS)]
+    return table(heads, lines, "llrrrrr")
+
+
+def cull_times(data):
+    """Milliseconds over the number of lights."""
+    counts = sorted({row["lights"] for row in data.cull if row["picture"] == CULL_PICTURE},
+                    key=int)
+    lines = []
+    for mix in ("points", "spots"):
+        for way in CULL_MAIN:
+            found = [cull_at(data.cull, mix, way, count) for count in counts]
+            lines.append([mix, code(way), *(shown(row["total_ms"] if row else "")
+                                            for row in found)])
+    return table(["lights", "way", *counts], lines, "ll" + "r" * len(counts))
+
+
+def culling(data):
+    """The section on light culling; nothing where it has not been measured."""
+    if not data.cull:
+        return ""
+    machine = remarks(data.cull_file)[0].split(": ")[0]
+    return CULLING.format(lights=CULL_LIGHTS, picture=CULL_PICTURE, machine=machine,
+                          choice=cull_choice(data), ways=cull_ways(data), times=cull_times(data))
+
+
 def document(data):
     topics = "\n".join(topic_section(topic, variants)
                        for topic, variants in data.topics().items())
     return TEMPLATE.format(gpu=GPU, minute=minute(data), topics=topics, lit=features_table(data),
-                           pictures=pictures_table(data),
+                           pictures=pictures_table(data), culling=culling(data),
                            peers=peers(data), published=published(data), skies=skies(data),
                            formulas=every_formula(data),
                            remarks="\n".join(f"- {remark}" for path in (
                                data.recorded_file, data.cpu_file, data.gcn_file,
-                               data.features_cpu_file, data.features_render_file)
+                               data.features_cpu_file, data.features_render_file, data.cull_file)
                                for remark in remarks(path)))
 
+
+CULLING = """## Light culling
+
+Which lights reach which pixels, by `hdrp_cull.h`: {lights} lights in a street, {picture}. No way
+misses a light. What a cheap one loses is time of pixels, which visit lights that are out of range.
+
+{choice}
+Times are medians on one core; the machine: {machine}.
+Ways, scene and columns are those of [bench/README.md](../bench/README.md).
+
+- Zero, the default, tests the volume of a light against that of each cell. A light may still
+  reach the cell but not the pixel: small cells have less of that, and more entries.
+- `HDRP_CULL_FAST` tests rectangles on the screen and depths only. Lists are built sooner and are
+  longer, those of spots most, which fill little of their rectangle. For lights that are cheap to
+  shade. With any of the next three it gains nothing: they ask pixels all the same, about more
+  lights.
+- `HDRP_CULL_PIXELS` keeps what reaches a pixel of the tile. It needs the depth buffer and one
+  slice: for opaque surfaces.
+- `HDRP_CULL_BLOCKS` notes in each entry which sixteenths of the tile the light reaches; pixels of
+  the others skip it, by `hdrp_cull_entry_covers`.
+- `HDRP_CULL_MASKS` notes it for each pixel: `hdrp_cull_mask_word`. An entry takes one bit
+  for each pixel of its tile, 32 bytes at 16 x 16, and no light is visited in vain but for rounding.
+
+![Lights visited over those in range, against milliseconds](images/tradeoffs_culling.svg)
+
+*Pairs* are those of a cell and a light in its list, *exact* those where it reaches the cell, or one
+of its pixels where they are asked; *visited* are lights that pixels visit, *true* those in range of
+them. 1 is the least of both. *Two jobs* says how much faster two cores are, where one takes 2 ms or
+more.
+
+{ways}
+Milliseconds in total over the number of lights; `naive`, for comparison, tests every light with
+every cell:
+
+{times}
+"""
 
 TEMPLATE = """# Trade-offs
 
@@ -334,7 +483,7 @@ not. Times of equal work differ by up to a fifth from run to run; errors do not.
 ![Image error against milliseconds](images/tradeoffs_render.svg)
 
 {pictures}
-## Skies
+{culling}## Skies
 
 GGX lobes and irradiance of a sky against brute force, relative to what is right, and one core's time
 for a whole map.

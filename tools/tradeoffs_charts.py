@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """Draws the charts of docs/tradeoffs.md with matplotlib: tradeoffs_charts.py.
 
-One for each topic, error against the cost on a CPU and on a GPU, one for the README, and one of
-whole pictures. The files are the same for the same numbers: no date, fixed identifiers.
+One for each topic, error against the cost on a CPU and on a GPU, one for the README, one of whole
+pictures, and one of light culling where it has been measured. The files are the same for the same
+numbers: no date, fixed identifiers.
 """
 import math
+from dataclasses import dataclass
 
 import matplotlib
 
@@ -21,8 +23,8 @@ README_TOPICS = ("normal codec 12 bits", "acos", "FGD", "iridescence", "sRGB enc
                  "colour temperature")
 CPU = ("ns", "ns a call, CPU loop")
 GPU = ("instructions", f"instructions, {tradeoffs.GPU}")
-# Parts of the height of a panel below which two labels would touch.
-LABEL_HEIGHT = 0.085
+# Parts of the height of a panel below which two labels would touch, and in that of light culling.
+LABEL_HEIGHT, CULL_LABEL_HEIGHT = 0.085, 0.05
 # Width of a letter of a label: in parts of a figure as wide as FULL_WIDTH inches.
 LABEL_WIDTH, FULL_WIDTH = 0.0068, 9.0
 
@@ -57,7 +59,7 @@ def scatter(axes, variants, cost, label):
     axes.xaxis.set_minor_formatter(ticker.NullFormatter())
 
 
-def label_points(axes, points):
+def label_points(axes, points, label_height=LABEL_HEIGHT):
     """Names to the right of their points, moved away where two would touch."""
     to_part = (axes.transScale + axes.transLimits).transform  # of the panel, 0 to 1
     width = LABEL_WIDTH * FULL_WIDTH / axes.get_position().width / axes.figure.get_figwidth()
@@ -68,7 +70,7 @@ def label_points(axes, points):
         length = width * len(variant.label)
 
         def touches(at):
-            return any(abs(at - other) < LABEL_HEIGHT and left < right_of and left + length > begin
+            return any(abs(at - other) < label_height and left < right_of and left + length > begin
                        for begin, other, right_of in
                        ((b - 0.01, h, b + max(w, 0.01)) for b, h, w in taken))
         shift = next(s for i in range(40) for s in (i * 0.02, -i * 0.02)
@@ -136,6 +138,64 @@ def changed_pair(rows, quality, feature):
     return max(pairs, key=lambda pair: abs(float(pair[0]["error"]) - float(pair[1]["error"])))
 
 
+@dataclass
+class CullPoint:
+    """A way to cull."""
+    label: str
+    ms: float
+    visits: float
+    take: bool
+
+
+def cull_points(rows, mix):
+    """way -> its point, of those that have both numbers."""
+    shown = (tradeoffs.CULL_PICTURE, mix, tradeoffs.CULL_LIGHTS)
+    return {row["way"]: CullPoint(row["way"], float(row["build_ms"]),
+                                  float(row["visits_over_true"]), row["way"] in tradeoffs.CULL_TAKE)
+            for row in rows if (row["picture"], row["mix"], row["lights"]) == shown
+            and row["build_ms"] and row["visits_over_true"]}
+
+
+def round_ticks(axis, firsts):
+    """Few numbers, as people write them, on a logarithmic axis: firsts are those from 1 to 10."""
+    axis.set_major_locator(ticker.LogLocator(subs=firsts))
+    axis.set_major_formatter(ticker.FormatStrFormatter("%g"))
+    axis.set_minor_locator(ticker.NullLocator())
+
+
+def draw_culling(rows):
+    """Lights that pixels visit over the time of lists; a line leads from a way to its fast form."""
+    figure, panels = pyplot.subplots(1, 2, figsize=(10, 4.6))
+    for axes, mix in zip(panels, ("points", "spots")):
+        points = cull_points(rows, mix)
+        ms, visits = [p.ms for p in points.values()], [p.visits for p in points.values()]
+        axes.set(xscale="log", yscale="log", xlabel="ms to build the lists")
+        axes.set_xlim(min(ms) / 1.5, max(ms) * (max(ms) / min(ms)) ** 0.4)
+        axes.set_ylim(max(visits) ** -0.06, max(visits) ** 1.06)
+        round_ticks(axes.xaxis, (1.0, 2.0, 5.0))
+        round_ticks(axes.yaxis, (1.0, 1.5, 2.0, 3.0, 5.0))
+        labels = []
+        for way, point in points.items():
+            if way.endswith(", fast"):
+                continue
+            fast = points.get(f"{way}, fast", point)
+            axes.plot([point.ms, fast.ms], [point.visits, fast.visits], "-", color=SOFT,
+                      linewidth=1)
+            colour = RECOMMENDED if point.take else OTHER
+            axes.plot(fast.ms, fast.visits, "o", color=colour, markerfacecolor="white")
+            axes.plot(point.ms, point.visits, "o", color=colour,
+                      markersize=7.5 if point.take else 6)
+            # Beyond the fast one where that is in the place of the name.
+            beside = fast.visits < 1.05 * point.visits
+            labels.append((max(point.ms, fast.ms) if beside else point.ms, point.visits, point))
+        label_points(axes, labels, CULL_LABEL_HEIGHT)
+        axes.set_title(f"{tradeoffs.CULL_LIGHTS} {mix}: hollow with HDRP_CULL_FAST", fontsize=9.5,
+                       loc="left", color=INK)
+    panels[0].set_ylabel("visited / true: lights of pixels, over those in range")
+    figure.tight_layout()
+    save(figure, "tradeoffs_culling.svg")
+
+
 def main():
     data = tradeoffs.Data()
     topics = data.topics()
@@ -144,6 +204,8 @@ def main():
     draw_overview(topics)
     if data.features_render:
         draw_pictures(data.features_render)
+    if data.cull:
+        draw_culling(data.cull)
 
 
 if __name__ == "__main__":
