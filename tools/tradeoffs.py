@@ -419,8 +419,7 @@ Ways, scene and columns are those of [bench/README.md](../bench/README.md).
   reach the cell but not the pixel: small cells have less of that, and more entries.
 - `HDRP_CULL_FAST` tests rectangles on the screen and depths only. Lists are built sooner and are
   longer, those of spots most, which fill little of their rectangle. For lights that are cheap to
-  shade. With any of the next three it gains nothing: they ask pixels all the same, about more
-  lights.
+  shade. The next three disregard it.
 - `HDRP_CULL_PIXELS` keeps what reaches a pixel of the tile. It needs the depth buffer and one
   slice: for opaque surfaces.
 - `HDRP_CULL_BLOCKS` notes in each entry which sixteenths of the tile the light reaches; pixels of
