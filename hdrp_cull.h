@@ -42,7 +42,7 @@
  * >>index of the functions, without hdrp_cull_ (written by tools/api_check.py --write)
  *   sets of shapes: set_memory_size set_init set_begin set_project
  *   grids of lists: memory_size init begin measure_depth rows scratch_size build count masks
- *       apply_blockers
+ *       light_features apply_blockers
  * >>end */
 #ifndef HDRP_CULL_H
 #define HDRP_CULL_H
@@ -264,6 +264,21 @@ HDRP_API hdrp_result hdrp_cull_count(const hdrp_cull_lists* lists, hdrp_cull_sta
  *  range       tiles are independent */
 HDRP_API hdrp_result hdrp_cull_masks(const hdrp_cull_lists* lists, uint32_t first_tile,
                                      uint32_t tile_count, uint32_t* words, uint32_t stride);
+
+/** Light features of tiles, for hdrp_cull_combine_features: the union over what their lists hold.
+ *  lists       after hdrp_cull_build and, where there are blockers, hdrp_cull_apply_blockers
+ *  set         that of hdrp_cull_build: hdrp_cull_shape_with_features says what its features mean
+ *  first_tile  any  index of the first tile, row by row
+ *  tile_count  any  how many: at most up to grid.tiles.z times grid.tiles.w
+ *  words       result: a word for each tile of lists, of which those of the range are written
+ *  returns     HDRP_OK
+ *  errors      HDRP_ERROR_NULL_POINTER, HDRP_ERROR_BAD_ARGUMENT for a bad range, or a set that does
+ *              not hold a listed index, in which case nothing is written
+ *  range       tiles are independent
+ *  note        0 where all lists are empty; what a tile dropped is not shaded and does not count */
+HDRP_API hdrp_result hdrp_cull_light_features(const hdrp_cull_lists* lists,
+                                              const hdrp_cull_set* set, uint32_t first_tile,
+                                              uint32_t tile_count, uint32_t* words);
 
 /** Optional stage: lights leave the cells that their blockers keep dark, and for each of the others
  *  a mask says which of its blockers pixels have to test.
@@ -1717,35 +1732,71 @@ HDRP_API hdrp_result hdrp_cull_count(const hdrp_cull_lists* lists, hdrp_cull_sta
     return HDRP_OK;
 }
 
+/* One more than the largest index that tiles list; 0 where all their lists are empty. */
+static uint32_t hdrp_i_cull_listed(const hdrp_cull_lists* lists, uint32_t first_tile,
+                                   uint32_t tile_count)
+{
+    size_t c = (size_t)first_tile * lists->desc.slice_count;
+    size_t end = c + (size_t)tile_count * lists->desc.slice_count;
+    uint32_t listed = 0u, i;
+    for (; c < end; ++c) {
+        uint32_t last = hdrp_cull_last(lists->cells[c], HDRP_CULL_CATEGORY_DECAL);
+        for (i = lists->cells[c].x; i < last; ++i) {
+            uint32_t shape = hdrp_cull_entry_index(lists->entries[i]);
+            listed = shape >= listed ? shape + 1u : listed;
+        }
+    }
+    return listed;
+}
+
 HDRP_API hdrp_result hdrp_cull_masks(const hdrp_cull_lists* lists, uint32_t first_tile,
                                      uint32_t tile_count, uint32_t* words, uint32_t stride)
 {
     size_t first, cells, c;
     uint32_t i;
-    int writing;
     if (!lists || (!words && tile_count > 0u)) {
         return HDRP_ERROR_NULL_POINTER;
     }
-    if (hdrp_i_cull_bad_range(first_tile, tile_count, lists->grid.tiles.z * lists->grid.tiles.w)) {
+    if (hdrp_i_cull_bad_range(first_tile, tile_count, lists->grid.tiles.z * lists->grid.tiles.w) ||
+        (hdrp_i_cull_listed(lists, first_tile, tile_count) + 31u) / 32u > stride) {
         return HDRP_ERROR_BAD_ARGUMENT;
     }
     first = (size_t)first_tile * lists->desc.slice_count;
     cells = (size_t)tile_count * lists->desc.slice_count;
-    for (writing = 0; writing < 2; ++writing) {
-        if (writing && cells > 0u) {
-            memset(words, 0, cells * stride * sizeof *words);
+    if (cells > 0u) {
+        memset(words, 0, cells * stride * sizeof *words);
+    }
+    for (c = 0u; c < cells; ++c) {
+        hdrp_u32x4 cell = lists->cells[first + c];
+        uint32_t last = hdrp_cull_last(cell, HDRP_CULL_CATEGORY_DECAL);
+        for (i = cell.x; i < last; ++i) {
+            uint32_t shape = hdrp_cull_entry_index(lists->entries[i]);
+            words[c * stride + shape / 32u] |= 1u << (shape % 32u);
         }
-        for (c = 0u; c < cells; ++c) {
-            hdrp_u32x4 cell = lists->cells[first + c];
+    }
+    return HDRP_OK;
+}
+
+HDRP_API hdrp_result hdrp_cull_light_features(const hdrp_cull_lists* lists,
+                                              const hdrp_cull_set* set, uint32_t first_tile,
+                                              uint32_t tile_count, uint32_t* words)
+{
+    uint32_t slices, tile, k, i;
+    if (!lists || !set || (!words && tile_count > 0u)) {
+        return HDRP_ERROR_NULL_POINTER;
+    }
+    if (hdrp_i_cull_bad_range(first_tile, tile_count, lists->grid.tiles.z * lists->grid.tiles.w) ||
+        hdrp_i_cull_listed(lists, first_tile, tile_count) > set->count) {
+        return HDRP_ERROR_BAD_ARGUMENT;
+    }
+    slices = lists->desc.slice_count;
+    for (tile = first_tile; tile < first_tile + tile_count; ++tile) {
+        words[tile] = 0u;
+        for (k = 0u; k < slices; ++k) {
+            hdrp_u32x4 cell = lists->cells[(size_t)tile * slices + k];
             uint32_t last = hdrp_cull_last(cell, HDRP_CULL_CATEGORY_DECAL);
-            for (i = hdrp_cull_first(cell, HDRP_CULL_CATEGORY_PUNCTUAL); i < last; ++i) {
-                uint32_t shape = hdrp_cull_entry_index(lists->entries[i]);
-                if (!writing && shape / 32u >= stride) {
-                    return HDRP_ERROR_BAD_ARGUMENT;
-                }
-                if (writing) {
-                    words[c * stride + shape / 32u] |= 1u << (shape % 32u);
-                }
+            for (i = cell.x; i < last; ++i) {
+                words[tile] |= set->shapes[hdrp_cull_entry_index(lists->entries[i])].bits.z;
             }
         }
     }

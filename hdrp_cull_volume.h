@@ -402,7 +402,7 @@ HDRP_FN hdrp_cull_shape hdrp_cull_shape_from_light(hdrp_light light)
 
 /** A shape with what lists are ranked by and shaders ask for: a probe or a decal gets it here.
  *  shape       valid
- *  features    any  bits that mean what the caller says
+ *  features    any  bits that mean what the caller says: hdrp_cull_light_features collects them
  *  layers      any  on which it has an effect, one bit each: hdrp_cull_shape_in_layers
  *  importance  any  what lists keep first when they are full
  *  returns     valid
