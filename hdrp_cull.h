@@ -37,7 +37,7 @@
  * Lists are ordered by category, then by index, and do not depend on how the work was split. A tile
  * whose entries do not fit drops the least important shapes, of equals those of higher index, and
  * counts them: hdrp_cull_count. A shape needs an entry in every slice that it reaches; once one
- * does not fit, what is less important is dropped too.
+ * does not fit, what is less important is dropped too, so that the most important always stays.
  *
  * >>index of the functions, without hdrp_cull_ (written by tools/api_check.py --write)
  *   sets of shapes: set_memory_size set_init set_begin set_project
@@ -141,9 +141,9 @@ typedef struct hdrp_cull_desc {
     uint32_t tile_width_px, tile_height_px; /* [0,HDRP_CULL_SIZE_MAX] 0: 32 */
     uint32_t slice_count;                   /* [0,HDRP_CULL_SLICES_MAX] 0: 64; 1: tiles */
     uint32_t shape_capacity;                /* [0,HDRP_CULL_SHAPES_MAX] of sets; 0: 1024 */
-    uint32_t
-        entry_capacity; /* [0,65535 x slices] of all lists of a tile; 0: 32 a slice, at least 256 */
-    uint32_t flags;     /* HDRP_CULL_FAST | ... */
+    uint32_t entry_capacity; /* [slices,65535 x slices] of all lists of a tile; 0: 32 a slice, at
+                                least 256. A shape may need an entry in each slice */
+    uint32_t flags;          /* HDRP_CULL_FAST | ... */
     float series_start_m, series_end_m; /* of hdrp_cull_grid_make */
 } hdrp_cull_desc;
 
@@ -178,8 +178,10 @@ HDRP_API size_t hdrp_cull_memory_size(const hdrp_cull_desc* desc);
  *  memory        block of the caller, aligned to HDRP_MEMORY_ALIGNMENT; it must outlive lists
  *  memory_bytes  size of the block
  *  returns       HDRP_OK
- *  errors        HDRP_ERROR_NULL_POINTER, HDRP_ERROR_BAD_ARGUMENT, HDRP_ERROR_TOO_LARGE,
- *                HDRP_ERROR_MEMORY_TOO_SMALL, HDRP_ERROR_MEMORY_ALIGNMENT */
+ *  errors        HDRP_ERROR_NULL_POINTER, HDRP_ERROR_BAD_ARGUMENT for sizes out of their ranges,
+ *                HDRP_ERROR_TOO_LARGE, HDRP_ERROR_MEMORY_TOO_SMALL, HDRP_ERROR_MEMORY_ALIGNMENT
+ *  note          with fewer entries than slices the most important shape might not fit, and then a
+ *                tile would list nothing at all: such an entry_capacity is out of range */
 HDRP_API hdrp_result hdrp_cull_init(hdrp_cull_lists* lists, const hdrp_cull_desc* desc,
                                     void* memory, size_t memory_bytes);
 
@@ -511,9 +513,9 @@ static hdrp_cull_desc hdrp_i_cull_defaults(const hdrp_cull_desc* desc)
     if (d.width_px > HDRP_CULL_SIZE_MAX || d.height_px > HDRP_CULL_SIZE_MAX || d.height_px < 1u ||
         d.tile_width_px > HDRP_CULL_SIZE_MAX || d.tile_height_px > HDRP_CULL_SIZE_MAX ||
         d.slice_count > HDRP_CULL_SLICES_MAX || d.shape_capacity > HDRP_CULL_SHAPES_MAX ||
-        d.entry_capacity > 65535u * d.slice_count || d.flags > 31u ||
-        ((d.flags & HDRP_CULL_PIXELS) && d.slice_count > 1u) || !(d.series_start_m >= 0.0f) ||
-        !(d.series_end_m >= 0.0f)) {
+        d.entry_capacity < d.slice_count || d.entry_capacity > 65535u * d.slice_count ||
+        d.flags > 31u || ((d.flags & HDRP_CULL_PIXELS) && d.slice_count > 1u) ||
+        !(d.series_start_m >= 0.0f) || !(d.series_end_m >= 0.0f)) {
         d.width_px = 0u;
     }
     return d;

@@ -138,6 +138,9 @@ static void sizes_that_are_out_of_range_need_no_memory(void** state)
     EXPECT_BAD(slice_count, HDRP_CULL_SLICES_MAX + 1u);
     EXPECT_BAD(shape_capacity, HDRP_CULL_SHAPES_MAX + 1u);
     EXPECT_BAD(entry_capacity, 65535u * 64u + 1u);
+    EXPECT_BAD(entry_capacity, 63u); /* less than an entry in each of 64 slices */
+    d.entry_capacity = 64u;
+    assert_true(hdrp_cull_memory_size(&d) > 0u && hdrp_cull_scratch_size(&d) > 0u);
     EXPECT_BAD(flags, 1u << 31);
     EXPECT_BAD(flags, HDRP_CULL_PIXELS); /* with 64 slices */
     EXPECT_BAD(flags, HDRP_CULL_BLOCKS);
@@ -218,12 +221,13 @@ static void shapes_are_projected_in_any_ranges(void** state)
 
 static void lists_that_cannot_be_made_are_left_alone(void** state)
 {
-    hdrp_cull_desc d = desc_of(0u, 0u), bad = d, large = d;
+    hdrp_cull_desc d = desc_of(0u, 0u), bad = d, few = d, large = d;
     size_t bytes = hdrp_cull_memory_size(&d);
     char* memory = block(bytes + 16u);
     hdrp_cull_lists lists, before;
     (void)state;
     bad.width_px = 0u;
+    few.entry_capacity = 63u;
     large.width_px = large.height_px = HDRP_CULL_SIZE_MAX;
     large.tile_width_px = large.tile_height_px = 1u;
     large.slice_count = HDRP_CULL_SLICES_MAX;
@@ -233,6 +237,7 @@ static void lists_that_cannot_be_made_are_left_alone(void** state)
     assert_int_equal(hdrp_cull_init(&lists, NULL, memory, bytes), HDRP_ERROR_NULL_POINTER);
     assert_int_equal(hdrp_cull_init(&lists, &d, NULL, bytes), HDRP_ERROR_NULL_POINTER);
     assert_int_equal(hdrp_cull_init(&lists, &bad, memory, bytes), HDRP_ERROR_BAD_ARGUMENT);
+    assert_int_equal(hdrp_cull_init(&lists, &few, memory, bytes), HDRP_ERROR_BAD_ARGUMENT);
     assert_int_equal(hdrp_cull_init(&lists, &large, memory, bytes), HDRP_ERROR_TOO_LARGE);
     assert_int_equal(hdrp_cull_init(&lists, &d, memory, bytes - 1u), HDRP_ERROR_MEMORY_TOO_SMALL);
     assert_int_equal(hdrp_cull_init(&lists, &d, memory + 8, bytes), HDRP_ERROR_MEMORY_ALIGNMENT);
@@ -578,6 +583,28 @@ static void light_features_of_a_bad_range_or_another_set_are_not_written(void** 
     scene_free(&s);
 }
 
+/* The least room there may be: the most important shape stays, though it spans all slices. */
+static void a_full_tile_never_loses_the_most_important_shape(void** state)
+{
+    hdrp_cull_desc desc = desc_of(16u, 0u);
+    hdrp_cull_shape shapes[3] = {hdrp_cull_shape_sphere(v3(0, 0, 10), 0.5f, 0u),
+                                 hdrp_cull_shape_sphere(v3(0, 0, 0), 1e18f, 0u),
+                                 hdrp_cull_shape_sphere(v3(0, 0, 10), 0.5f, 0u)};
+    scene s;
+    (void)state;
+    shapes[1].bits.w = hdrp_bits_from_f32(2.0f);
+    desc.entry_capacity = 16u;
+    s = scene_make(desc, shapes, 3u);
+    scene_build(&s, NULL);
+    for (uint32_t cell = 0; cell < 35u * 16u; ++cell) {
+        hdrp_u32x4 c = s.lists.cells[cell];
+        assert_int_equal(hdrp_cull_last(c, 3u) - c.x, 1u);
+        assert_int_equal(hdrp_cull_entry_index(s.lists.entries[c.x]), 1u);
+    }
+    assert_int_equal(s.lists.tile_dropped[hdrp_cull_tile_of_pixel(s.lists.grid, 50, 40)], 2u);
+    scene_free(&s);
+}
+
 static void depth_decides_what_a_tile_lists(void** state)
 {
     float texels[WIDTH * HEIGHT];
@@ -771,6 +798,7 @@ int main(void)
         cmocka_unit_test(light_features_are_the_union_over_the_lists_of_a_tile),
         cmocka_unit_test(light_features_of_what_was_dropped_do_not_count),
         cmocka_unit_test(light_features_of_a_bad_range_or_another_set_are_not_written),
+        cmocka_unit_test(a_full_tile_never_loses_the_most_important_shape),
         cmocka_unit_test(depth_decides_what_a_tile_lists),
         cmocka_unit_test(blocks_are_those_whose_pixels_are_reached),
         cmocka_unit_test(masks_of_entries_are_the_pixels_that_are_reached),
