@@ -241,8 +241,8 @@ HDRP_API hdrp_result hdrp_cull_build(hdrp_cull_lists* lists, const hdrp_cull_set
 /* What did not fit, and what did. */
 typedef struct hdrp_cull_stats {
     uint64_t entries;    /* of all lists */
+    uint64_t dropped;    /* shapes dropped, summed over the tiles */
     uint32_t tiles_full; /* tiles that dropped shapes */
-    uint32_t dropped;    /* shapes dropped, summed over the tiles */
     uint32_t longest;    /* entries of the longest list */
 } hdrp_cull_stats;
 

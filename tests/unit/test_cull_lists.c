@@ -583,6 +583,22 @@ static void light_features_of_a_bad_range_or_another_set_are_not_written(void** 
     scene_free(&s);
 }
 
+/* A large picture in small tiles with 65535 shapes drops more than 32 bits count. */
+static void dropped_shapes_are_counted_in_64_bits(void** state)
+{
+    scene s = scene_make(desc_of(1u, 0u), NULL, 0u);
+    hdrp_cull_stats stats;
+    (void)state;
+    scene_build(&s, NULL);
+    for (uint32_t tile = 0; tile < 35u; ++tile) {
+        s.lists.tile_dropped[tile] = tile < 2u ? 0x80000000u : 0u;
+    }
+    assert_int_equal(hdrp_cull_count(&s.lists, &stats), HDRP_OK);
+    assert_true(stats.dropped == (uint64_t)1u << 32);
+    assert_int_equal(stats.tiles_full, 2u);
+    scene_free(&s);
+}
+
 /* The least room there may be: the most important shape stays, though it spans all slices. */
 static void a_full_tile_never_loses_the_most_important_shape(void** state)
 {
@@ -798,6 +814,7 @@ int main(void)
         cmocka_unit_test(light_features_are_the_union_over_the_lists_of_a_tile),
         cmocka_unit_test(light_features_of_what_was_dropped_do_not_count),
         cmocka_unit_test(light_features_of_a_bad_range_or_another_set_are_not_written),
+        cmocka_unit_test(dropped_shapes_are_counted_in_64_bits),
         cmocka_unit_test(a_full_tile_never_loses_the_most_important_shape),
         cmocka_unit_test(depth_decides_what_a_tile_lists),
         cmocka_unit_test(blocks_are_those_whose_pixels_are_reached),
