@@ -32,12 +32,12 @@
  * Lists are ordered by category, then by index, and do not depend on how the work was split. A tile
  * whose entries do not fit drops the least important shapes, of equals those of higher index, and
  * counts them: hdrp_cull_count. A shape needs an entry in every slice that it reaches; once one
- * does not fit, what is less important is dropped too.
+ * does not fit, what is less important is dropped too, so that the most important always stays.
  *
  * >>index of the functions, without hdrp_cull_ (written by tools/api_check.py --write)
  *   sets of shapes: set_memory_size set_init set_begin set_project
  *   grids of lists: memory_size init begin measure_depth rows scratch_size build count masks
- *       apply_blockers
+ *       light_features apply_blockers
  * >>end */
 #ifndef HDRP_CULL_H
 #define HDRP_CULL_H
@@ -55,9 +55,8 @@
 #include <stddef.h>
 #endif
 
-#if defined(__clang__) && !defined(HDRP_GPU)
-#pragma STDC FP_CONTRACT OFF
-#endif
+/* Shapes of a set: their indices have 16 bits. */
+#define HDRP_CULL_SHAPES_MAX 65535u
 
 /* Flags of hdrp_cull_desc. */
 #define HDRP_CULL_FAST       1u /* rectangles and depths only; not with HDRP_CULL_PIXELS */
@@ -137,9 +136,9 @@ typedef struct hdrp_cull_desc {
     uint32_t tile_width_px, tile_height_px; /* [0,HDRP_CULL_SIZE_MAX] 0: 32 */
     uint32_t slice_count;                   /* [0,HDRP_CULL_SLICES_MAX] 0: 64; 1: tiles */
     uint32_t shape_capacity;                /* [0,HDRP_CULL_SHAPES_MAX] of sets; 0: 1024 */
-    uint32_t
-        entry_capacity; /* [0,65535 x slices] of all lists of a tile; 0: 32 a slice, at least 256 */
-    uint32_t flags;     /* HDRP_CULL_FAST | ... */
+    uint32_t entry_capacity; /* [slices,65535 x slices] of all lists of a tile; 0: 32 a slice, at
+                                least 256. A shape may need an entry in each slice */
+    uint32_t flags;          /* HDRP_CULL_FAST | ... */
     float series_start_m, series_end_m; /* of hdrp_cull_grid_make */
 } hdrp_cull_desc;
 
@@ -147,8 +146,8 @@ typedef struct hdrp_cull_desc {
 typedef struct hdrp_cull_lists {
     hdrp_cull_desc desc;     /* with the defaults in place */
     hdrp_cull_grid grid;     /* for the camera of hdrp_cull_begin */
-    hdrp_v4* tiles;          /* see the section grid */
-    hdrp_u32x4* cells;       /* see the section lists */
+    hdrp_v4* tiles;          /* see hdrp_cull_grid.h */
+    hdrp_u32x4* cells;       /* see hdrp_cull_grid.h */
     uint32_t* entries;       /* entry_capacity of each tile, which begins at a multiple of that */
     uint32_t* masks;         /* of each entry, see hdrp_cull_mask_word; NULL without the flag */
     uint32_t* tile_dropped;  /* shapes that each tile had no room for */
@@ -174,8 +173,10 @@ HDRP_API size_t hdrp_cull_memory_size(const hdrp_cull_desc* desc);
  *  memory        block of the caller, aligned to HDRP_MEMORY_ALIGNMENT; it must outlive lists
  *  memory_bytes  size of the block
  *  returns       HDRP_OK
- *  errors        HDRP_ERROR_NULL_POINTER, HDRP_ERROR_BAD_ARGUMENT, HDRP_ERROR_TOO_LARGE,
- *                HDRP_ERROR_MEMORY_TOO_SMALL, HDRP_ERROR_MEMORY_ALIGNMENT */
+ *  errors        HDRP_ERROR_NULL_POINTER, HDRP_ERROR_BAD_ARGUMENT for sizes out of their ranges,
+ *                HDRP_ERROR_TOO_LARGE, HDRP_ERROR_MEMORY_TOO_SMALL, HDRP_ERROR_MEMORY_ALIGNMENT
+ *  note          with fewer entries than slices the most important shape might not fit, and then a
+ *                tile would list nothing at all: such an entry_capacity is out of range */
 HDRP_API hdrp_result hdrp_cull_init(hdrp_cull_lists* lists, const hdrp_cull_desc* desc,
                                     void* memory, size_t memory_bytes);
 
@@ -235,8 +236,8 @@ HDRP_API hdrp_result hdrp_cull_build(hdrp_cull_lists* lists, const hdrp_cull_set
 /* What did not fit, and what did. */
 typedef struct hdrp_cull_stats {
     uint64_t entries;    /* of all lists */
+    uint64_t dropped;    /* shapes dropped, summed over the tiles */
     uint32_t tiles_full; /* tiles that dropped shapes */
-    uint32_t dropped;    /* shapes dropped, summed over the tiles */
     uint32_t longest;    /* entries of the longest list */
 } hdrp_cull_stats;
 
@@ -261,6 +262,21 @@ HDRP_API hdrp_result hdrp_cull_count(const hdrp_cull_lists* lists, hdrp_cull_sta
 HDRP_API hdrp_result hdrp_cull_masks(const hdrp_cull_lists* lists, uint32_t first_tile,
                                      uint32_t tile_count, uint32_t* words, uint32_t stride);
 
+/** Light features of tiles, for hdrp_cull_combine_features: the union over what their lists hold.
+ *  lists       after hdrp_cull_build and, where there are blockers, hdrp_cull_apply_blockers
+ *  set         that of hdrp_cull_build: hdrp_cull_shape_with_features says what its features mean
+ *  first_tile  any  index of the first tile, row by row
+ *  tile_count  any  how many: at most up to grid.tiles.z times grid.tiles.w
+ *  words       result: a word for each tile of lists, of which those of the range are written
+ *  returns     HDRP_OK
+ *  errors      HDRP_ERROR_NULL_POINTER, HDRP_ERROR_BAD_ARGUMENT for a bad range, or a set that does
+ *              not hold a listed index, in which case nothing is written
+ *  range       tiles are independent
+ *  note        0 where all lists are empty; what a tile dropped is not shaded and does not count */
+HDRP_API hdrp_result hdrp_cull_light_features(const hdrp_cull_lists* lists,
+                                              const hdrp_cull_set* set, uint32_t first_tile,
+                                              uint32_t tile_count, uint32_t* words);
+
 /** Optional stage: lights leave the cells that their blockers keep dark, and for each of the others
  *  a mask says which of its blockers pixels have to test.
  *  lists       after hdrp_cull_build of the tiles' rows; lists become shorter, in the same order
@@ -283,10 +299,6 @@ HDRP_API hdrp_result hdrp_cull_apply_blockers(hdrp_cull_lists* lists, hdrp_cull_
 }
 #endif
 #endif /* HDRP_GPU */
-
-#if defined(__clang__) && !defined(HDRP_GPU)
-#pragma STDC FP_CONTRACT DEFAULT
-#endif
 
 #endif /* HDRP_CULL_H */
 
@@ -498,9 +510,9 @@ static hdrp_cull_desc hdrp_i_cull_defaults(const hdrp_cull_desc* desc)
     if (d.width_px > HDRP_CULL_SIZE_MAX || d.height_px > HDRP_CULL_SIZE_MAX || d.height_px < 1u ||
         d.tile_width_px > HDRP_CULL_SIZE_MAX || d.tile_height_px > HDRP_CULL_SIZE_MAX ||
         d.slice_count > HDRP_CULL_SLICES_MAX || d.shape_capacity > HDRP_CULL_SHAPES_MAX ||
-        d.entry_capacity > 65535u * d.slice_count || d.flags > 31u ||
-        ((d.flags & HDRP_CULL_PIXELS) && d.slice_count > 1u) || !(d.series_start_m >= 0.0f) ||
-        !(d.series_end_m >= 0.0f)) {
+        d.entry_capacity < d.slice_count || d.entry_capacity > 65535u * d.slice_count ||
+        d.flags > 31u || ((d.flags & HDRP_CULL_PIXELS) && d.slice_count > 1u) ||
+        !(d.series_start_m >= 0.0f) || !(d.series_end_m >= 0.0f)) {
         d.width_px = 0u;
     }
     return d;
@@ -1822,35 +1834,71 @@ HDRP_API hdrp_result hdrp_cull_count(const hdrp_cull_lists* lists, hdrp_cull_sta
     return HDRP_OK;
 }
 
+/* One more than the largest index that tiles list; 0 where all their lists are empty. */
+static uint32_t hdrp_i_cull_listed(const hdrp_cull_lists* lists, uint32_t first_tile,
+                                   uint32_t tile_count)
+{
+    size_t c = (size_t)first_tile * lists->desc.slice_count;
+    size_t end = c + (size_t)tile_count * lists->desc.slice_count;
+    uint32_t listed = 0u, i;
+    for (; c < end; ++c) {
+        uint32_t last = hdrp_cull_last(lists->cells[c], HDRP_CULL_CATEGORY_DECAL);
+        for (i = lists->cells[c].x; i < last; ++i) {
+            uint32_t shape = hdrp_cull_entry_index(lists->entries[i]);
+            listed = shape >= listed ? shape + 1u : listed;
+        }
+    }
+    return listed;
+}
+
 HDRP_API hdrp_result hdrp_cull_masks(const hdrp_cull_lists* lists, uint32_t first_tile,
                                      uint32_t tile_count, uint32_t* words, uint32_t stride)
 {
     size_t first, cells, c;
     uint32_t i;
-    int writing;
     if (!lists || (!words && tile_count > 0u)) {
         return HDRP_ERROR_NULL_POINTER;
     }
-    if (hdrp_i_cull_bad_range(first_tile, tile_count, lists->grid.tiles.z * lists->grid.tiles.w)) {
+    if (hdrp_i_cull_bad_range(first_tile, tile_count, lists->grid.tiles.z * lists->grid.tiles.w) ||
+        (hdrp_i_cull_listed(lists, first_tile, tile_count) + 31u) / 32u > stride) {
         return HDRP_ERROR_BAD_ARGUMENT;
     }
     first = (size_t)first_tile * lists->desc.slice_count;
     cells = (size_t)tile_count * lists->desc.slice_count;
-    for (writing = 0; writing < 2; ++writing) {
-        if (writing && cells > 0u) {
-            memset(words, 0, cells * stride * sizeof *words);
+    if (cells > 0u) {
+        memset(words, 0, cells * stride * sizeof *words);
+    }
+    for (c = 0u; c < cells; ++c) {
+        hdrp_u32x4 cell = lists->cells[first + c];
+        uint32_t last = hdrp_cull_last(cell, HDRP_CULL_CATEGORY_DECAL);
+        for (i = cell.x; i < last; ++i) {
+            uint32_t shape = hdrp_cull_entry_index(lists->entries[i]);
+            words[c * stride + shape / 32u] |= 1u << (shape % 32u);
         }
-        for (c = 0u; c < cells; ++c) {
-            hdrp_u32x4 cell = lists->cells[first + c];
+    }
+    return HDRP_OK;
+}
+
+HDRP_API hdrp_result hdrp_cull_light_features(const hdrp_cull_lists* lists,
+                                              const hdrp_cull_set* set, uint32_t first_tile,
+                                              uint32_t tile_count, uint32_t* words)
+{
+    uint32_t slices, tile, k, i;
+    if (!lists || !set || (!words && tile_count > 0u)) {
+        return HDRP_ERROR_NULL_POINTER;
+    }
+    if (hdrp_i_cull_bad_range(first_tile, tile_count, lists->grid.tiles.z * lists->grid.tiles.w) ||
+        hdrp_i_cull_listed(lists, first_tile, tile_count) > set->count) {
+        return HDRP_ERROR_BAD_ARGUMENT;
+    }
+    slices = lists->desc.slice_count;
+    for (tile = first_tile; tile < first_tile + tile_count; ++tile) {
+        words[tile] = 0u;
+        for (k = 0u; k < slices; ++k) {
+            hdrp_u32x4 cell = lists->cells[(size_t)tile * slices + k];
             uint32_t last = hdrp_cull_last(cell, HDRP_CULL_CATEGORY_DECAL);
-            for (i = hdrp_cull_first(cell, HDRP_CULL_CATEGORY_PUNCTUAL); i < last; ++i) {
-                uint32_t shape = hdrp_cull_entry_index(lists->entries[i]);
-                if (!writing && shape / 32u >= stride) {
-                    return HDRP_ERROR_BAD_ARGUMENT;
-                }
-                if (writing) {
-                    words[c * stride + shape / 32u] |= 1u << (shape % 32u);
-                }
+            for (i = cell.x; i < last; ++i) {
+                words[tile] |= set->shapes[hdrp_cull_entry_index(lists->entries[i])].bits.z;
             }
         }
     }

@@ -1,14 +1,18 @@
-/* hdrp_cull_grid.h - which lists of lights belong to a position, and how they are read.
+/* hdrp_cull_grid.h - where the list of a pixel is: grids of tiles and slices, cells, entries.
  * SPDX-License-Identifier: MIT
  *
- * See hdrp_math.h for the languages, the conventions and the override macros. A grid over the
- * picture has tiles of pixels, and each tile slices of depth; the cell of a tile and a slice says
- * which entries reach it. hdrp_cull.h makes all of them; a shader, or C code, reads them:
+ * For shaders, and for hdrp_cull.h, which includes this header: from a pixel and its depth to a
+ * cell of the grid, and from the cell to the shapes that it lists.
  *
  *     tile = hdrp_cull_tile_of_pixel(grid, x, y);
  *     cell = cells[hdrp_cull_cell(grid, tile, hdrp_cull_slice(grid, tiles[tile].z, z_view))];
  *     for (i = hdrp_cull_first(cell, category); i < hdrp_cull_last(cell, category); ++i)
- *         shade with light hdrp_cull_entry_index(entries[i])
+ *         if (hdrp_cull_entry_covers(grid, entries[i], x, y) != 0u)
+ *             shade with light hdrp_cull_entry_index(entries[i])
+ *
+ * Comparisons decide here what is found, so nothing in this header may be contracted to fused
+ * multiply-adds; see hdrp_cull_volume.h. See hdrp_math.h for the languages and the override macros.
+ * There is no algorithm layer.
  *
  * >>index of the functions, without hdrp_cull_ (written by tools/api_check.py --write)
  *   grid: log2 series_scale grid_make tile_of_pixel slice cell
@@ -29,8 +33,6 @@
 
 /* Largest picture, in pixels along a side. */
 #define HDRP_CULL_SIZE_MAX 16384u
-/* Shapes of a set: their indices have 16 bits. */
-#define HDRP_CULL_SHAPES_MAX 65535u
 /* Slices of a tile. */
 #define HDRP_CULL_SLICES_MAX 256u
 

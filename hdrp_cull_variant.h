@@ -11,9 +11,11 @@
  *     #define HDRP_CULL_IMPLEMENTATION
  *     #include "hdrp_cull_variant.h"
  *
- * Every frame, from a feature word per pixel and one per list of lights to indirect dispatches:
+ * Every frame, from a feature word per pixel and lists of tiles of the same size (hdrp_cull.h) to
+ * indirect dispatches:
  *
  *     hdrp_cull_material_tiles(&image, 16, 0, tile_rows, words);
+ *     hdrp_cull_light_features(&lists, &set, 0, tile_count, light_words);
  *     hdrp_cull_combine_features(words, light_words, words, 0, tile_count);
  *     hdrp_cull_assign_variants(&variants, words, chosen, 0, tile_count);
  *     hdrp_cull_build_dispatch(&dispatch, chosen, tiles_x, tiles_y);
@@ -175,7 +177,7 @@ HDRP_API hdrp_result hdrp_cull_material_tiles(const hdrp_cull_feature_image* ima
 
 /** Features of tiles: those of the material and those of the lights.
  *  materials  a word per tile; 0 where there is nothing to shade
- *  lights     a word per tile, or NULL for none
+ *  lights     a word per tile, as of hdrp_cull_light_features, or NULL for none
  *  words      result, which may be materials or lights; stays 0 where materials is 0
  *  first      [0,4294967295]  first tile
  *  count      [0,4294967295]  tiles

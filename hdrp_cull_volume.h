@@ -30,8 +30,8 @@
  *
  * >>index of the functions, without hdrp_cull_ (written by tools/api_check.py --write)
  *   camera: camera_perspective camera_orthographic view_from_world
- *   shapes: shape_sphere shape_box shape_from_light shape_kind shape_category shape_in_view
- *       shape_ball shape_plane_count shape_plane shape_contains
+ *   shapes: shape_sphere shape_box shape_from_light shape_with_features shape_in_layers shape_kind
+ *       shape_category shape_in_view shape_ball shape_plane_count shape_plane shape_contains
  *   tiles: tile_make interval_ball interval_plane
  *   screen bounds: ball_bounds shape_bounds
  * >>end */
@@ -360,7 +360,8 @@ HDRP_FN hdrp_u32 hdrp_i_cull_kind_of_light(hdrp_u32 type)
  *  returns  valid  with the layers and the importance of the light, and its features
  *  edges    reaches nothing where it has no type or range; a directional light reaches everything.
  *           Area lights reach what is within their range of their surface, rectangles and discs in
- *           front of them only; a disc counts as the part of a square that is within its ball
+ *           front of them only; a disc counts as the part of a square that is within its ball. An
+ *           importance below 0 and NaN count as 0, an infinite one as FLT_MAX
  *  error    none: a selection
  *  source   a definition */
 HDRP_FN hdrp_cull_shape hdrp_cull_shape_from_light(hdrp_light light)
@@ -395,8 +396,41 @@ HDRP_FN hdrp_cull_shape hdrp_cull_shape_from_light(hdrp_light light)
     s.bits.y = light.bits.y;
     s.bits.z = HDRP_CULL_FEATURE_OF_TYPE(type & 15u) |
                ((light.bits.x & ~HDRP_LIGHT_TYPE_MASK) << HDRP_CULL_FEATURE_SHIFT);
-    s.bits.w = hdrp_bits_from_f32(light.edge_importance.w);
+    s.bits.w = hdrp_bits_from_f32(hdrp_clamp(light.edge_importance.w, 0.0f, HDRP_FLT_MAX));
     return s;
+}
+
+/** A shape with what lists are ranked by and shaders ask for: a probe or a decal gets it here.
+ *  shape       valid
+ *  features    any  bits that mean what the caller says: hdrp_cull_light_features collects them
+ *  layers      any  on which it has an effect, one bit each: hdrp_cull_shape_in_layers
+ *  importance  any  what lists keep first when they are full
+ *  returns     valid
+ *  edges       an importance below 0 and NaN count as 0, an infinite one as FLT_MAX
+ *  error       none: a definition
+ *  source      a definition
+ *  note        replaces what hdrp_cull_shape_from_light took from a light: for one feature more,
+ *              give it shape.bits.z | feature */
+HDRP_FN hdrp_cull_shape hdrp_cull_shape_with_features(hdrp_cull_shape shape, hdrp_u32 features,
+                                                      hdrp_u32 layers, float importance)
+{
+    shape.bits.y = layers;
+    shape.bits.z = features;
+    shape.bits.w = hdrp_bits_from_f32(hdrp_clamp(importance, 0.0f, HDRP_FLT_MAX));
+    return shape;
+}
+
+/** Whether a shape has an effect on a surface: hdrp_light_affects for what is not a light.
+ *  shape    any
+ *  layers   any    of the surface, one bit each
+ *  returns  [0,1]  1 where they have a layer in common
+ *  edges    a surface on no layer is affected by nothing
+ *  error    none: a selection of bits
+ *  source   Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
+ *           Definition Render Pipeline", slides on light layers */
+HDRP_FN hdrp_u32 hdrp_cull_shape_in_layers(hdrp_cull_shape shape, hdrp_u32 layers)
+{
+    return (shape.bits.y & layers) != 0u ? 1u : 0u;
 }
 
 /** The kind of a shape.

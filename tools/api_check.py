@@ -40,7 +40,7 @@ DEPENDENCIES = {
     "cull_grid": "math light cull_volume",
     "cull_variant": "math",
     "cull_blocker": "math light cull_volume",
-    "cull": "math light cull_volume cull_grid cull_blocker cull_variant",
+    "cull": "math light cull_volume cull_blocker cull_grid cull_variant",
     "vol": "math light cull",
     "gpu_vk": "math light brdf oit sss env pack area cull vol",
 }

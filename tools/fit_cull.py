@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Derives the coefficients of hdrp_cull_log2 in hdrp_cull.h; needs what fit_math.py needs.
+"""Derives the coefficients of hdrp_cull_log2 in hdrp_cull_grid.h; needs what fit_math.py needs.
 
 log2(1 + m) = m + m (1 - m) q(m) on [0,1], so that powers of 2 are exact: q is minimax in the
 absolute error of the logarithm. Prints the coefficients, lowest power first.

@@ -406,7 +406,7 @@ def matching(code, start, pair):
 
 # A topic that outgrew its header stands in one of its own and keeps the names: topic -> header.
 SPLIT_FROM = {"brdf_lobes": "brdf", "env_image": "env", "cull_volume": "cull",
-              "cull_grid": "cull", "cull_blocker": "cull", "cull_variant": "cull"}
+              "cull_blocker": "cull", "cull_grid": "cull", "cull_variant": "cull"}
 
 
 class Header:

@@ -111,7 +111,7 @@ bool rd_lists_begin(rd_lists* l, const rd_lights* lights, bool blocked, int widt
         return false;
     }
     for (uint32_t i = 0; i < l->count; ++i) {
-        l->shapes[i] = hdrp_cull_shape_from_light(lights->items[i]);
+        l->shapes[i] = rd_variants_shape(lights, i);
     }
     return true;
 }

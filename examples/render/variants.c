@@ -88,11 +88,12 @@ static uint32_t material_word(hdrp_u32 features)
     return w;
 }
 
-static uint32_t light_word(const rd_sub_frame* s, uint32_t light)
+hdrp_cull_shape rd_variants_shape(const rd_lights* lights, uint32_t light)
 {
-    uint32_t types = s->r->lists.shapes[light].bits.z & LIGHT_MASK;
-    bool blocked = s->r->lighting->lights.links[light].count > 0u;
-    return types << (BIT_LIGHTS - 1u) | (blocked ? BIT(BIT_BLOCKERS) : 0u);
+    hdrp_cull_shape s = hdrp_cull_shape_from_light(lights->items[light]);
+    uint32_t word = (s.bits.z & LIGHT_MASK) << (BIT_LIGHTS - 1u);
+    word |= lights->links[light].count > 0u ? BIT(BIT_BLOCKERS) : 0u;
+    return hdrp_cull_shape_with_features(s, word, s.bits.y, hdrp_f32_from_bits(s.bits.w));
 }
 
 /* What is lit from the GBuffer; other pixels are no business of tiles. */
@@ -109,33 +110,24 @@ static uint32_t* pixel_words(const rd_sub_frame* s)
     return words;
 }
 
-static void add_lights(const rd_sub_frame* s, uint32_t* words, uint32_t tiles)
-{
-    const hdrp_cull_lists* lists = &s->r->lists.tiles.lists;
-    for (uint32_t t = 0; t < tiles; ++t) {
-        hdrp_u32x4 cell = lists->cells[t];
-        uint32_t last = hdrp_cull_last(cell, HDRP_CULL_CATEGORY_PUNCTUAL), lights = 0u;
-        for (uint32_t e = hdrp_cull_first(cell, HDRP_CULL_CATEGORY_PUNCTUAL); e < last; ++e) {
-            lights |= light_word(s, hdrp_cull_entry_index(lists->entries[e]));
-        }
-        words[t] = words[t] ? words[t] | lights : 0u;
-    }
-}
-
 static bool classify(const rd_sub_frame* s, uint32_t* words, hdrp_u32x4 tiles)
 {
+    const rd_lists* l = &s->r->lists;
     hdrp_cull_feature_image image;
+    uint32_t count = tiles.z * tiles.w;
     uint32_t* pixels = pixel_words(s);
+    uint32_t* lights = (uint32_t*)malloc(count * sizeof *lights);
     bool ok;
     memset(&image, 0, sizeof image);
     image.pixels = pixels;
     image.width = (uint32_t)s->r->width;
     image.height = (uint32_t)s->r->height;
-    ok = pixels && hdrp_cull_material_tiles(&image, tiles.x, 0u, tiles.w, words) == HDRP_OK;
+    ok = pixels && lights &&
+         hdrp_cull_material_tiles(&image, tiles.x, 0u, tiles.w, words) == HDRP_OK &&
+         hdrp_cull_light_features(&l->tiles.lists, &l->set, 0u, count, lights) == HDRP_OK &&
+         hdrp_cull_combine_features(words, lights, words, 0u, count) == HDRP_OK;
     free(pixels);
-    if (ok) {
-        add_lights(s, words, tiles.z * tiles.w);
-    }
+    free(lights);
     return ok;
 }
 
@@ -149,7 +141,7 @@ static uint32_t worst_word(const rd_sub_frame* s)
         w |= material_word(s->r->scene->materials[i].features);
     }
     for (uint32_t i = 0; i < s->r->lists.count; ++i) {
-        w |= light_word(s, i);
+        w |= s->r->lists.shapes[i].bits.z;
     }
     return w;
 }

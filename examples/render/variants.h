@@ -23,6 +23,9 @@ typedef struct rd_variants {
     char names[RD_VARIANT_LIMIT][RD_VARIANT_NAME_MAX];
 } rd_variants;
 
+/* Where a light reaches, with the features that it needs of a variant. */
+hdrp_cull_shape rd_variants_shape(const rd_lights* lights, uint32_t light);
+
 void rd_variants_end(rd_variants* v);
 void rd_variants_count(const rd_variants* v, rd_stats* stats);
 

@@ -149,7 +149,7 @@ void cull_hash_scene_make(cull_hash_scene* s, uint32_t index)
     s->desc.width_px = 200u + index;
     s->desc.height_px = 150u;
     s->desc.slice_count = (s->desc.flags & of_pixels) != 0u ? 1u : slices[index / 6u % 4u];
-    s->desc.entry_capacity = index % 5u == 0u ? 40u : 0u; /* some are full */
+    s->desc.entry_capacity = index % 5u == 0u ? s->desc.slice_count + 39u : 0u; /* some are full */
     if (index % 3u != 0u || (s->desc.flags & of_pixels) != 0u) {
         make_depth(s, index);
     }

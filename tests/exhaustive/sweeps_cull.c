@@ -1,8 +1,8 @@
-/* sweeps_cull.c - functions of one float of hdrp_cull.h.
+/* sweeps_cull.c - functions of one float of hdrp_cull_grid.h.
  * SPDX-License-Identifier: MIT */
 #include "exhaustive.h"
 
-#include "hdrp_cull.h"
+#include "hdrp_cull_grid.h"
 
 EX_VALUES(cull_log2, hdrp_cull_log2)
 EX_ERROR(cull_log2, ex_absolute(EX_Y(0), log2(x)))

@@ -1,8 +1,8 @@
-/* test_cull_grid.c - the formulas of hdrp_cull.h: grids, slices and how lists are read.
+/* test_cull_grid.c - the formulas of hdrp_cull_grid.h: grids, slices and how lists are read.
  * SPDX-License-Identifier: MIT */
 #include "cull_test.h"
 
-#include "hdrp_cull.h"
+#include "hdrp_cull_grid.h"
 
 static hdrp_cull_camera camera_of(float near_m, float far_m)
 {

@@ -138,6 +138,9 @@ static void sizes_that_are_out_of_range_need_no_memory(void** state)
     EXPECT_BAD(slice_count, HDRP_CULL_SLICES_MAX + 1u);
     EXPECT_BAD(shape_capacity, HDRP_CULL_SHAPES_MAX + 1u);
     EXPECT_BAD(entry_capacity, 65535u * 64u + 1u);
+    EXPECT_BAD(entry_capacity, 63u); /* less than an entry in each of 64 slices */
+    d.entry_capacity = 64u;
+    assert_true(hdrp_cull_memory_size(&d) > 0u && hdrp_cull_scratch_size(&d) > 0u);
     EXPECT_BAD(flags, 1u << 31);
     EXPECT_BAD(flags, HDRP_CULL_PIXELS); /* with 64 slices */
     EXPECT_BAD(flags, HDRP_CULL_BLOCKS);
@@ -218,12 +221,13 @@ static void shapes_are_projected_in_any_ranges(void** state)
 
 static void lists_that_cannot_be_made_are_left_alone(void** state)
 {
-    hdrp_cull_desc d = desc_of(0u, 0u), bad = d, large = d;
+    hdrp_cull_desc d = desc_of(0u, 0u), bad = d, few = d, large = d;
     size_t bytes = hdrp_cull_memory_size(&d);
     char* memory = block(bytes + 16u);
     hdrp_cull_lists lists, before;
     (void)state;
     bad.width_px = 0u;
+    few.entry_capacity = 63u;
     large.width_px = large.height_px = HDRP_CULL_SIZE_MAX;
     large.tile_width_px = large.tile_height_px = 1u;
     large.slice_count = HDRP_CULL_SLICES_MAX;
@@ -233,6 +237,7 @@ static void lists_that_cannot_be_made_are_left_alone(void** state)
     assert_int_equal(hdrp_cull_init(&lists, NULL, memory, bytes), HDRP_ERROR_NULL_POINTER);
     assert_int_equal(hdrp_cull_init(&lists, &d, NULL, bytes), HDRP_ERROR_NULL_POINTER);
     assert_int_equal(hdrp_cull_init(&lists, &bad, memory, bytes), HDRP_ERROR_BAD_ARGUMENT);
+    assert_int_equal(hdrp_cull_init(&lists, &few, memory, bytes), HDRP_ERROR_BAD_ARGUMENT);
     assert_int_equal(hdrp_cull_init(&lists, &large, memory, bytes), HDRP_ERROR_TOO_LARGE);
     assert_int_equal(hdrp_cull_init(&lists, &d, memory, bytes - 1u), HDRP_ERROR_MEMORY_TOO_SMALL);
     assert_int_equal(hdrp_cull_init(&lists, &d, memory + 8, bytes), HDRP_ERROR_MEMORY_ALIGNMENT);
@@ -482,6 +487,140 @@ static void a_full_tile_drops_the_least_important_and_counts_them(void** state)
     scene_free(&s);
 }
 
+static void light_features_are_the_union_over_the_lists_of_a_tile(void** state)
+{
+    hdrp_cull_shape shapes[6];
+    uint32_t words[35], expected[35] = {0u};
+    scene s;
+    (void)state;
+    fill(shapes); /* five around (50, 40), of all categories, and one in column 1 */
+    for (uint32_t i = 0; i < 6u; ++i) {
+        shapes[i] = hdrp_cull_shape_with_features(shapes[i], 0x80000001u << i, 0u, 1.0f);
+        /* Of each a depth of its own: no cell lists them all. */
+        shapes[i].center_range.z = i == 5u ? 10.0f : 2.0f + 6.0f * (float)i;
+    }
+    s = scene_make(desc_of(16u, 0u), shapes, 6u);
+    scene_build(&s, NULL);
+    memset(words, 0x77, sizeof words);
+    assert_int_equal(hdrp_cull_light_features(&s.lists, &s.set, 14u, 21u, words), HDRP_OK);
+    for (uint32_t t = 0; t < 14u; ++t) {
+        assert_int_equal(words[t], 0x77777777u);
+    }
+    assert_int_equal(words[hdrp_cull_tile_of_pixel(s.lists.grid, 50, 40)], 0x8000001fu);
+    assert_int_equal(words[hdrp_cull_tile_of_pixel(s.lists.grid, 17, 40)], 0x20u);
+    assert_int_equal(words[34], 0u);
+    assert_int_equal(hdrp_cull_light_features(&s.lists, &s.set, 0u, 35u, words), HDRP_OK);
+    for (uint32_t i = 0; i < 6u; ++i) {
+        /* The lists by themselves, shape by shape. */
+        scene one = scene_make(desc_of(16u, 0u), shapes + i, 1u);
+        hdrp_cull_stats stats;
+        scene_build(&one, NULL);
+        assert_int_equal(hdrp_cull_count(&one.lists, &stats), HDRP_OK);
+        assert_true(stats.entries > 0u);
+        for (uint32_t c = 0; c < 35u * 16u; ++c) {
+            hdrp_u32x4 cell = one.lists.cells[c];
+            expected[c / 16u] |= hdrp_cull_last(cell, 3u) > cell.x ? shapes[i].bits.z : 0u;
+        }
+        scene_free(&one);
+    }
+    assert_memory_equal(words, expected, sizeof words);
+    scene_free(&s);
+    s = scene_make(desc_of(16u, 0u), NULL, 0u);
+    scene_build(&s, NULL);
+    assert_int_equal(hdrp_cull_light_features(&s.lists, &s.set, 0u, 35u, words), HDRP_OK);
+    for (uint32_t t = 0; t < 35u; ++t) {
+        assert_int_equal(words[t], 0u);
+    }
+    scene_free(&s);
+}
+
+static void light_features_of_what_was_dropped_do_not_count(void** state)
+{
+    hdrp_cull_desc desc = desc_of(1u, 0u);
+    hdrp_cull_shape shapes[6];
+    uint32_t words[35];
+    scene s;
+    (void)state;
+    fill(shapes); /* importance 0, 1, 4, 9, 16 and, elsewhere, 25 */
+    for (uint32_t i = 0; i < 6u; ++i) {
+        shapes[i].bits.z = 1u << i;
+    }
+    desc.entry_capacity = 2u;
+    s = scene_make(desc, shapes, 6u);
+    scene_build(&s, NULL);
+    assert_int_equal(hdrp_cull_light_features(&s.lists, &s.set, 0u, 35u, words), HDRP_OK);
+    assert_int_equal(words[hdrp_cull_tile_of_pixel(s.lists.grid, 50, 40)], 0x18u);
+    scene_free(&s);
+}
+
+static void light_features_of_a_bad_range_or_another_set_are_not_written(void** state)
+{
+    hdrp_cull_shape shapes[6];
+    hdrp_cull_camera c = camera();
+    uint32_t words[35], before[35];
+    scene s;
+    (void)state;
+    fill(shapes);
+    s = scene_make(desc_of(16u, 0u), shapes, 6u);
+    scene_build(&s, NULL);
+    memset(words, 0x77, sizeof words);
+    memcpy(before, words, sizeof words);
+#define FEATURES(lists, set, first, count, words)                                                  \
+    hdrp_cull_light_features(lists, set, first, count, words)
+    assert_int_equal(FEATURES(NULL, &s.set, 0, 1, words), HDRP_ERROR_NULL_POINTER);
+    assert_int_equal(FEATURES(&s.lists, NULL, 0, 1, words), HDRP_ERROR_NULL_POINTER);
+    assert_int_equal(FEATURES(&s.lists, &s.set, 0, 1, NULL), HDRP_ERROR_NULL_POINTER);
+    assert_int_equal(FEATURES(&s.lists, &s.set, 0, 0, NULL), HDRP_OK);
+    assert_int_equal(FEATURES(&s.lists, &s.set, 35, 0, words), HDRP_OK);
+    assert_int_equal(FEATURES(&s.lists, &s.set, 0, 36, words), HDRP_ERROR_BAD_ARGUMENT);
+    assert_int_equal(FEATURES(&s.lists, &s.set, 36, 0, words), HDRP_ERROR_BAD_ARGUMENT);
+    assert_int_equal(FEATURES(&s.lists, &s.set, 2, 0xfffffffeu, words), HDRP_ERROR_BAD_ARGUMENT);
+    /* Shape 5 is listed, in column 1 alone. */
+    assert_int_equal(hdrp_cull_set_begin(&s.set, &c, WIDTH, HEIGHT, 5u), HDRP_OK);
+    assert_int_equal(FEATURES(&s.lists, &s.set, 0, 35, words), HDRP_ERROR_BAD_ARGUMENT);
+    assert_memory_equal(words, before, sizeof words);
+    assert_int_equal(FEATURES(&s.lists, &s.set, 17, 1, words), HDRP_OK);
+    scene_free(&s);
+}
+
+/* A large picture in small tiles with 65535 shapes drops more than 32 bits count. */
+static void dropped_shapes_are_counted_in_64_bits(void** state)
+{
+    scene s = scene_make(desc_of(1u, 0u), NULL, 0u);
+    hdrp_cull_stats stats;
+    (void)state;
+    scene_build(&s, NULL);
+    for (uint32_t tile = 0; tile < 35u; ++tile) {
+        s.lists.tile_dropped[tile] = tile < 2u ? 0x80000000u : 0u;
+    }
+    assert_int_equal(hdrp_cull_count(&s.lists, &stats), HDRP_OK);
+    assert_true(stats.dropped == (uint64_t)1u << 32);
+    assert_int_equal(stats.tiles_full, 2u);
+    scene_free(&s);
+}
+
+/* The least room there may be: the most important shape stays, though it spans all slices. */
+static void a_full_tile_never_loses_the_most_important_shape(void** state)
+{
+    hdrp_cull_desc desc = desc_of(16u, 0u);
+    hdrp_cull_shape shapes[3] = {hdrp_cull_shape_sphere(v3(0, 0, 10), 0.5f, 0u),
+                                 hdrp_cull_shape_sphere(v3(0, 0, 0), 1e18f, 0u),
+                                 hdrp_cull_shape_sphere(v3(0, 0, 10), 0.5f, 0u)};
+    scene s;
+    (void)state;
+    shapes[1].bits.w = hdrp_bits_from_f32(2.0f);
+    desc.entry_capacity = 16u;
+    s = scene_make(desc, shapes, 3u);
+    scene_build(&s, NULL);
+    for (uint32_t cell = 0; cell < 35u * 16u; ++cell) {
+        hdrp_u32x4 c = s.lists.cells[cell];
+        assert_int_equal(hdrp_cull_last(c, 3u) - c.x, 1u);
+        assert_int_equal(hdrp_cull_entry_index(s.lists.entries[c.x]), 1u);
+    }
+    assert_int_equal(s.lists.tile_dropped[hdrp_cull_tile_of_pixel(s.lists.grid, 50, 40)], 2u);
+    scene_free(&s);
+}
+
 static void depth_decides_what_a_tile_lists(void** state)
 {
     float texels[WIDTH * HEIGHT];
@@ -672,6 +811,11 @@ int main(void)
         cmocka_unit_test(lists_are_ordered_by_category_and_index),
         cmocka_unit_test(masks_have_the_bits_of_lists),
         cmocka_unit_test(a_full_tile_drops_the_least_important_and_counts_them),
+        cmocka_unit_test(light_features_are_the_union_over_the_lists_of_a_tile),
+        cmocka_unit_test(light_features_of_what_was_dropped_do_not_count),
+        cmocka_unit_test(light_features_of_a_bad_range_or_another_set_are_not_written),
+        cmocka_unit_test(dropped_shapes_are_counted_in_64_bits),
+        cmocka_unit_test(a_full_tile_never_loses_the_most_important_shape),
         cmocka_unit_test(depth_decides_what_a_tile_lists),
         cmocka_unit_test(blocks_are_those_whose_pixels_are_reached),
         cmocka_unit_test(masks_of_entries_are_the_pixels_that_are_reached),

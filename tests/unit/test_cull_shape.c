@@ -108,6 +108,61 @@ static void every_type_of_light_has_its_shape(void** state)
     }
 }
 
+static float importance_of(hdrp_cull_shape s)
+{
+    return hdrp_f32_from_bits(s.bits.w);
+}
+
+static void any_shape_may_have_features_layers_and_importance(void** state)
+{
+    hdrp_cull_shape probe = hdrp_cull_shape_sphere(v3(1, 2, 3), 4.0f, 2u);
+    hdrp_cull_shape decal = hdrp_cull_shape_box(v3(1, 2, 3), v3(0, 0, 1), v3(0, 1, 0), 1, 2, 3, 3u);
+    hdrp_cull_shape p = hdrp_cull_shape_with_features(probe, 0x80000001u, 6u, 2.5f);
+    hdrp_cull_shape d = hdrp_cull_shape_with_features(decal, 7u, 0u, 1e30f);
+    (void)state;
+    assert_int_equal(p.bits.y, 6u);
+    assert_int_equal(p.bits.z, 0x80000001u);
+    assert_true(importance_of(p) == 2.5f && importance_of(d) == 1e30f);
+    /* Nothing else has changed. */
+    expect_kind(d, HDRP_CULL_KIND_BOX, HDRP_CULL_CATEGORY_DECAL);
+    d.bits = decal.bits;
+    p.bits.y = probe.bits.y;
+    p.bits.z = probe.bits.z;
+    p.bits.w = probe.bits.w;
+    assert_memory_equal(&d, &decal, sizeof d);
+    assert_memory_equal(&p, &probe, sizeof p);
+}
+
+static void shapes_have_an_effect_on_the_layers_they_share(void** state)
+{
+    hdrp_cull_shape s = hdrp_cull_shape_sphere(v3(0, 0, 0), 1.0f, 0u);
+    (void)state;
+    assert_int_equal(hdrp_cull_shape_in_layers(s, 0x80000000u), 1u);
+    assert_int_equal(hdrp_cull_shape_in_layers(s, 0u), 0u);
+    s = hdrp_cull_shape_with_features(s, 0xffffffffu, 0x80000004u, 1.0f);
+    assert_int_equal(hdrp_cull_shape_in_layers(s, 0x80000000u), 1u);
+    assert_int_equal(hdrp_cull_shape_in_layers(s, 0x7ffffffbu), 0u);
+    assert_int_equal(hdrp_cull_shape_in_layers(s, 0x7fffffffu), 1u);
+}
+
+/* Lists rank by the bits of importance: whatever it was, they are those of a number from 0 on. */
+static void importance_is_a_number_that_is_not_negative(void** state)
+{
+    const float given[] = {
+        0.0f,   -0.0f, -1.0f,        (float)NAN,     -(float)NAN, -(float)INFINITY,
+        1e-45f, 3.0f,  HDRP_FLT_MAX, (float)INFINITY};
+    const float expected[] = {0, 0, 0, 0, 0, 0, 1e-45f, 3.0f, HDRP_FLT_MAX, HDRP_FLT_MAX};
+    hdrp_light light = hdrp_light_point(v3(1, 2, 3), v3(4, 5, 6), 7.0f);
+    hdrp_cull_shape s = hdrp_cull_shape_sphere(v3(0, 0, 0), 1.0f, 0u);
+    (void)state;
+    for (size_t i = 0; i < sizeof given / sizeof given[0]; ++i) {
+        light.edge_importance.w = given[i];
+        assert_int_equal(hdrp_cull_shape_from_light(light).bits.w, hdrp_bits_from_f32(expected[i]));
+        assert_int_equal(hdrp_cull_shape_with_features(s, 0u, 0u, given[i]).bits.w,
+                         hdrp_bits_from_f32(expected[i]));
+    }
+}
+
 static void area_lights_reach_their_range_from_their_surface(void** state)
 {
     hdrp_light light =
@@ -347,6 +402,9 @@ int main(void)
         cmocka_unit_test(spheres_without_size_or_place_reach_nothing),
         cmocka_unit_test(boxes_may_be_flat_but_not_negative),
         cmocka_unit_test(every_type_of_light_has_its_shape),
+        cmocka_unit_test(any_shape_may_have_features_layers_and_importance),
+        cmocka_unit_test(shapes_have_an_effect_on_the_layers_they_share),
+        cmocka_unit_test(importance_is_a_number_that_is_not_negative),
         cmocka_unit_test(area_lights_reach_their_range_from_their_surface),
         cmocka_unit_test(what_is_far_or_endless_becomes_a_ball_around_the_eye),
         cmocka_unit_test(balls_contain_their_shapes_and_fit),

@@ -1,8 +1,8 @@
-/* acc_cull.c - accuracy of hdrp_cull.h.
+/* acc_cull_grid.c - accuracy of hdrp_cull_grid.h.
  * SPDX-License-Identifier: MIT */
 #include "accuracy.h"
 
-#include "hdrp_cull.h"
+#include "hdrp_cull_grid.h"
 
 static void log2_at(acc* a, float x)
 {
@@ -20,4 +20,4 @@ static void log2_error(acc* a)
     log2_at(a, 1.0f);
 }
 
-const acc_entry acc_cull[] = {{"cull_log2", log2_error}, {NULL, NULL}};
+const acc_entry acc_cull_grid[] = {{"cull_log2", log2_error}, {NULL, NULL}};
