@@ -67,7 +67,7 @@ static int run(FILE* file, const cull_hash_scene* s, uint32_t index)
                              scratch, scratch_bytes) == HDRP_OK &&
              hdrp_cull_count(&lists, &stats) == HDRP_OK;
     if (ok) {
-        fprintf(file, "%2u %016" PRIx64 " %" PRIu64 " entries, %u dropped\n", index,
+        fprintf(file, "%2u %016" PRIx64 " %" PRIu64 " entries, %" PRIu64 " dropped\n", index,
                 hash_lists(&lists), stats.entries, stats.dropped);
     }
     free(a);
