@@ -329,6 +329,34 @@ static void lights_close_to_blockers_are_no_exception(void** state)
     }
 }
 
+/* A square that leans towards one of its corners, inside the picture: its shadow begins there, and
+ * reaches the end of the picture; lit from the other side it is the other way round. */
+static void shadows_begin_at_a_corner_of_their_blocker(void** state)
+{
+    const double lean = 0.6, half = 0.9, middle = 5.0;
+    hdrp_cull_camera c = hdrp_cull_camera_orthographic(v3(0, 0, 0), v3(0, 0, 1), v3(0, 1, 0), -3, 3,
+                                                       -3, 3, 0.5f, 50.0f);
+    hdrp_cull_tile tile = hdrp_cull_tile_make(c, 0, 0, 100, 100, 100, 100);
+    hdrp_cull_interval depths = {0.5f, 50.0f};
+    (void)state;
+    for (int k = 0; k < 4; ++k) {
+        double x = k & 1 ? lean : -lean, y = k & 2 ? lean : -lean;
+        hdrp_cull_blocker b = hdrp_cull_blocker_rectangle(v3(0, 0, middle), v3(x, y, 1),
+                                                          v3(0, 1, 0), (float)half, (float)half);
+        double deep = half * (fabs((double)b.right_half.z) + fabs((double)b.up_half.z));
+        hdrp_cull_shadow s =
+            hdrp_cull_shadow_make(b, hdrp_v4_make(0, 0, -1, 0), tile, depths, 1.0f);
+        assert_true(deep > 0.5);
+        assert_true((double)s.reached.nearest <= middle - deep);
+        assert_true((double)s.reached.nearest >= middle - deep - 1e-4);
+        assert_true(s.reached.farthest >= 50.0f);
+        s = hdrp_cull_shadow_make(b, hdrp_v4_make(0, 0, 1, 0), tile, depths, 1.0f);
+        assert_true((double)s.reached.farthest >= middle + deep);
+        assert_true((double)s.reached.farthest <= middle + deep + 1e-4);
+        assert_true(s.reached.nearest <= 0.5f);
+    }
+}
+
 static void a_light_in_the_plane_of_a_wall_covers_nothing(void** state)
 {
     (void)state;
@@ -697,6 +725,7 @@ int main(void)
         cmocka_unit_test(classes_of_blockers_and_portals_combine),
         cmocka_unit_test(cells_are_never_classified_wrongly_and_seldom_per_pixel_for_nothing),
         cmocka_unit_test(lights_close_to_blockers_are_no_exception),
+        cmocka_unit_test(shadows_begin_at_a_corner_of_their_blocker),
         cmocka_unit_test(a_light_in_the_plane_of_a_wall_covers_nothing),
         cmocka_unit_test(what_is_too_far_to_compute_with_is_left_to_pixels),
         cmocka_unit_test(masks_keep_all_that_decides_and_lights_go_that_are_kept_out),

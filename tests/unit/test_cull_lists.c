@@ -57,10 +57,10 @@ static hdrp_cull_desc desc_of(uint32_t slices, uint32_t flags)
     return d;
 }
 
-static scene scene_make(hdrp_cull_desc desc, const hdrp_cull_shape* shapes, uint32_t count)
+static scene scene_seen(hdrp_cull_desc desc, hdrp_cull_camera c, const hdrp_cull_shape* shapes,
+                        uint32_t count)
 {
     scene s = {0};
-    hdrp_cull_camera c = camera();
     size_t set_bytes = hdrp_cull_set_memory_size(64u), bytes = hdrp_cull_memory_size(&desc);
     assert_true(set_bytes > 0 && bytes > 0);
     s.desc = desc;
@@ -74,6 +74,11 @@ static scene scene_make(hdrp_cull_desc desc, const hdrp_cull_shape* shapes, uint
     assert_int_equal(hdrp_cull_set_project(&s.set, shapes, 0u, count), HDRP_OK);
     assert_int_equal(hdrp_cull_begin(&s.lists, &s.set), HDRP_OK);
     return s;
+}
+
+static scene scene_make(hdrp_cull_desc desc, const hdrp_cull_shape* shapes, uint32_t count)
+{
+    return scene_seen(desc, camera(), shapes, count);
 }
 
 static void scene_build(scene* s, const hdrp_cull_depth* depth)
@@ -747,6 +752,93 @@ static void masks_of_entries_are_the_pixels_that_are_reached(void** state)
     scene_free(&s);
 }
 
+/* An orthographic picture in which a pixel is a metre. */
+static hdrp_cull_camera map(void)
+{
+    return hdrp_cull_camera_orthographic(v3(0, 0, 0), v3(0, 0, 1), v3(0, 1, 0), -50.0f, 50.0f,
+                                         -40.0f, 40.0f, 0.5f, 100.0f);
+}
+
+/* Whether the mask of the only shape has a pixel. */
+static bool mask_has(const scene* s, uint32_t x, uint32_t y)
+{
+    hdrp_u32x4 cell = s->lists.cells[hdrp_cull_tile_of_pixel(s->lists.grid, x, y)];
+    return hdrp_cull_last(cell, 3u) > cell.x &&
+           (s->lists.masks[hdrp_cull_mask_word(s->lists.grid, cell.x, x, y)] >>
+                hdrp_cull_mask_bit(s->lists.grid, x, y) &
+            1u);
+}
+
+/* The rim of a ball goes through the centres of four pixels, or passes them by 0.3 mm. */
+static void pixels_are_asked_at_their_centres(void** state)
+{
+    static float texels[WIDTH * HEIGHT];
+    hdrp_cull_depth depth = {texels, WIDTH, NULL};
+    (void)state;
+    for (size_t i = 0; i < WIDTH * HEIGHT; ++i) {
+        texels[i] = 10.0f;
+    }
+    for (int inside = 0; inside < 2; ++inside) {
+        float radius = inside ? 20.5003f : 20.4997f;
+        hdrp_cull_shape across = hdrp_cull_shape_sphere(v3(0, 0.5f, 10), radius, 0u);
+        hdrp_cull_shape along = hdrp_cull_shape_sphere(v3(-0.5f, 0, 10), radius, 0u);
+        scene s = scene_seen(desc_of(1u, HDRP_CULL_MASKS), map(), &across, 1u);
+        scene_build(&s, &depth);
+        assert_true(mask_has(&s, 69, 39) && mask_has(&s, 30, 39));
+        assert_int_equal(mask_has(&s, 70, 39), inside);
+        assert_int_equal(mask_has(&s, 29, 39), inside);
+        scene_free(&s);
+        s = scene_seen(desc_of(1u, HDRP_CULL_MASKS), map(), &along, 1u);
+        scene_build(&s, &depth);
+        assert_true(mask_has(&s, 50, 20) && mask_has(&s, 50, 59));
+        assert_int_equal(mask_has(&s, 50, 19), inside);
+        assert_int_equal(mask_has(&s, 50, 60), inside);
+        scene_free(&s);
+    }
+}
+
+/* A wall right in front of where a shape begins in a tile, or behind its end, is not reached. */
+static void expect_reached(hdrp_cull_camera c, hdrp_cull_shape shape, uint32_t x, double nearest,
+                           double farthest)
+{
+    static float texels[WIDTH * HEIGHT];
+    const double walls[] = {nearest * 0.9997, nearest * 1.0003, farthest * 0.9997,
+                            farthest * 1.0003};
+    hdrp_cull_depth depth = {texels, WIDTH, NULL};
+    for (int k = 0; k < 4; ++k) {
+        scene s = scene_seen(desc_of(1u, 0u), c, &shape, 1u);
+        for (size_t i = 0; i < WIDTH * HEIGHT; ++i) {
+            texels[i] = (float)walls[k];
+        }
+        scene_build(&s, &depth);
+        assert_string_equal(list_at(&s, x, 40, texels[0], 0u), k == 1 || k == 2 ? "0 " : "");
+        scene_free(&s);
+    }
+}
+
+/* Where a shape begins and ends on the left side of the tile at pixel 64, or on the axis of view,
+ * in closed form. */
+static void walls_beside_shapes_are_not_reached(void** state)
+{
+    const double left = 0.35, at = 14.0, chord = sqrt(100.0 - (1.0 + left * left) * 75.0);
+    const double narrow = 3.0 * sqrt(2.0), wide = 12.0 * sqrt(2.0);
+    hdrp_v3 oblique = v3(1, 0, 1), up = v3(0, 1, 0);
+    hdrp_cull_shape ball = hdrp_cull_shape_sphere(v3(0, 0, 10), 5.0f, 0u);
+    hdrp_cull_shape large = hdrp_cull_shape_sphere(v3(0, 0, 30), 20.0f, 0u);
+    /* Of these |x| + |z - depth| is limited. */
+    hdrp_cull_shape box = hdrp_cull_shape_box(v3(0, 0, 10), oblique, up, 3, 20, 3, 0u);
+    hdrp_cull_shape block = hdrp_cull_shape_box(v3(0, 0, 30), oblique, up, 12, 50, 12, 0u);
+    (void)state;
+    expect_reached(camera(), ball, 50u, 5.0, 15.0);
+    expect_reached(camera(), ball, 70u, (10.0 - chord) / (1.0 + left * left),
+                   (10.0 + chord) / (1.0 + left * left));
+    expect_reached(camera(), box, 70u, (10.0 - narrow) / (1.0 - left),
+                   (10.0 + narrow) / (1.0 + left));
+    expect_reached(map(), large, 50u, 10.0, 50.0);
+    expect_reached(map(), large, 70u, 30.0 - sqrt(400.0 - at * at), 30.0 + sqrt(400.0 - at * at));
+    expect_reached(map(), block, 70u, 30.0 - (wide - at), 30.0 + (wide - at));
+}
+
 static void rows_may_be_built_in_any_order(void** state)
 {
     hdrp_cull_shape shapes[40];
@@ -819,6 +911,8 @@ int main(void)
         cmocka_unit_test(depth_decides_what_a_tile_lists),
         cmocka_unit_test(blocks_are_those_whose_pixels_are_reached),
         cmocka_unit_test(masks_of_entries_are_the_pixels_that_are_reached),
+        cmocka_unit_test(pixels_are_asked_at_their_centres),
+        cmocka_unit_test(walls_beside_shapes_are_not_reached),
         cmocka_unit_test(rows_may_be_built_in_any_order),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

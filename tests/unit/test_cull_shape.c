@@ -27,6 +27,9 @@ static void spheres_without_size_or_place_reach_nothing(void** state)
     assert_int_equal(s.bits.y, 0xffffffffu);
     assert_int_equal(s.bits.z, 0u);
     assert_true(hdrp_f32_from_bits(s.bits.w) == 1.0f);
+    /* A frame like any other's, and an angle of half a turn: all around. */
+    assert_true(s.right_half.x == 1.0f && s.up_half.y == 1.0f && s.forward_half.z == -1.0f);
+    assert_true(s.half_angle.x == -1.0f && s.half_angle.z == -1.0f);
     expect_kind(hdrp_cull_shape_sphere(p, inf, 7u), HDRP_CULL_KIND_BALL, 3u);
     assert_true(hdrp_cull_shape_sphere(p, inf, 7u).center_range.w == 1e18f);
     expect_kind(hdrp_cull_shape_sphere(p, 0.0f, 0u), HDRP_CULL_KIND_NONE, 0u);
@@ -339,6 +342,66 @@ static void outlines_of_cones_and_pyramids_pass_through_the_eye(void** state)
     assert_true(hdrp_cull_shape_plane(cone, 9u, 0.0f).w == 1.0f);
 }
 
+/* Seen from outside its apex, a pyramid has two edges in its outline, and each of its planes has one
+ * of them in it. */
+static void outlines_of_pyramids_hold_two_edges(void** state)
+{
+    uint64_t random = 8;
+    int with_two = 0;
+    (void)state;
+    for (int i = 0; i < 4000; ++i) {
+        dvec f = test_direction(&random);
+        float x = (float)test_uniform(&random, 0.2, 1.2),
+              y = (float)test_uniform(&random, 0.2, 1.2);
+        body b;
+        hdrp_cull_shape s = hdrp_cull_shape_from_light(hdrp_light_pyramid(
+            v3(3, 4, 30), v3_from(f), v3(0, 1, 0), v3(1, 1, 1), 10.0f, x, y, 0.5f));
+        dvec outline[4];
+        int count = 0;
+        b = body_of(s);
+        for (uint32_t k = 6; k < 10u; ++k) {
+            hdrp_v4 plane = hdrp_cull_shape_plane(s, k, i & 1 ? 1.0f : 0.0f);
+            double most = -1.0;
+            if (dv_length(dv_from_v4(plane)) == 0.0) {
+                continue;
+            }
+            for (int edge = 0; edge < 4; ++edge) {
+                dvec e = dv_mad(b.forward, b.right, (edge & 1 ? 1 : -1) * tan(b.angle_x));
+                e = dv_unit(dv_mad(e, b.up, (edge & 2 ? 1 : -1) * tan(b.angle_y)));
+                most = fmax(most, dv_dot(e, dv_from_v4(plane)));
+            }
+            assert_true(fabs(most) < 1e-5);
+            outline[count++] = dv_from_v4(plane);
+        }
+        assert_true(count <= 2);
+        with_two += count == 2 && dv_dot(outline[0], outline[1]) < 0.999 ? 1 : 0;
+    }
+    assert_true(with_two > 2000);
+}
+
+/* Sides of a cone are an eighth of a turn apart. */
+static void sides_of_cones_are_all_around(void** state)
+{
+    const float angle = 0.3f;
+    hdrp_cull_shape s = hdrp_cull_shape_from_light(
+        hdrp_light_spot(v3(1, 2, 30), v3(0, 0, 1), v3(1, 1, 1), 10.0f, 0.1f, angle));
+    (void)state;
+    for (uint32_t k = 0; k < 8u; ++k) {
+        double turn = 0.25 * TEST_PI * (double)k, cosine = cos((double)angle);
+        dvec n = dv_from_v4(hdrp_cull_shape_plane(s, k, 0.0f));
+        assert_true(fabs(dv_dot(n, dv_from_v4(s.right_half)) - cos(turn) * cosine) < 1e-5);
+        assert_true(fabs(dv_dot(n, dv_from_v4(s.up_half)) - sin(turn) * cosine) < 1e-5);
+        assert_true(fabs(n.z + sin((double)angle)) < 1e-5);
+    }
+    /* An orthographic eye looks along z: outlines have normals across. */
+    s = hdrp_cull_shape_from_light(
+        hdrp_light_spot(v3(1, 2, 30), v3(1, 0.2f, 0.4f), v3(1, 1, 1), 10.0f, 0.1f, angle));
+    for (uint32_t k = 8; k < 10u; ++k) {
+        hdrp_v4 plane = hdrp_cull_shape_plane(s, k, 1.0f);
+        assert_true(dv_length(dv_from_v4(plane)) > 0.5 && fabsf(plane.z) < 1e-5f);
+    }
+}
+
 static void balls_and_wide_cones_have_no_planes(void** state)
 {
     hdrp_cull_shape s = hdrp_cull_shape_sphere(v3(0, 0, 1), 1.0f, 0u);
@@ -411,6 +474,8 @@ int main(void)
         cmocka_unit_test(planes_enclose_their_shapes_and_touch_them),
         cmocka_unit_test(planes_of_an_outline_pass_through_the_eye),
         cmocka_unit_test(outlines_of_cones_and_pyramids_pass_through_the_eye),
+        cmocka_unit_test(outlines_of_pyramids_hold_two_edges),
+        cmocka_unit_test(sides_of_cones_are_all_around),
         cmocka_unit_test(balls_and_wide_cones_have_no_planes),
         cmocka_unit_test(positions_are_inside_where_the_definition_says_so),
     };

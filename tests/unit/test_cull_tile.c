@@ -279,8 +279,8 @@ static void bounds_of_shapes_are_tighter_than_those_of_balls(void** state)
         hdrp_light_spot(v3(0, 0, 20), v3(0, 0, -1), v3(1, 1, 1), 10.0f, 0.1f, 0.2f));
     hdrp_cull_bounds b = hdrp_cull_shape_bounds(s, c, 1000, 1000);
     (void)state;
-    assert_true(b.nearest > 9.99f && b.nearest <= 10.0f);
-    assert_true(b.farthest >= 20.0f && b.farthest < 20.01f);
+    assert_true(b.nearest > 9.999f && b.nearest <= 10.0f);
+    assert_true(b.farthest >= 20.0f && b.farthest < 20.001f);
     assert_true(b.rect_px.x > 310.0f && b.rect_px.z < 690.0f); /* the ball: 211 to 789 */
     s = hdrp_cull_shape_box(v3(0, 0, 20), v3(0, 0, 1), v3(0, 1, 0), 3, 3, 1, 0u);
     b = hdrp_cull_shape_bounds(s, c, 1000, 1000);
@@ -291,6 +291,69 @@ static void bounds_of_shapes_are_tighter_than_those_of_balls(void** state)
     s.bits.x = HDRP_CULL_KIND_FRONT;
     b = hdrp_cull_shape_bounds(s, c, 1000, 1000);
     assert_true(b.nearest > 19.99f && b.farthest < 22.01f && b.farthest >= 22.0f);
+}
+
+/* The nearest and the farthest depth of a body, along the axis of view. */
+static void depths_of_cones_and_boxes_are_tight(void** state)
+{
+    static const uint32_t tight[] = {HDRP_CULL_KIND_CONE, HDRP_CULL_KIND_BOX, HDRP_CULL_KIND_FRONT};
+    hdrp_cull_camera c = camera_of(1.0f, -1, 1, -1, 1, 1e-6f, 1e18f);
+    uint64_t random = 9;
+    int compared = 0;
+    (void)state;
+    for (int i = 0; i < 20000; ++i) {
+        hdrp_cull_shape s = test_shape(tight[i % 3], &random);
+        body b = body_of(s);
+        double slack = 2e-5 * (dv_length(b.center) + body_size(&b));
+        double nearest = -body_support(&b, dv(0, 0, -1)), farthest = body_support(&b, dv(0, 0, 1));
+        hdrp_cull_bounds bounds = hdrp_cull_shape_bounds(s, c, 100.0f, 100.0f);
+        if (nearest <= 1e-5 || (b.kind == HDRP_CULL_KIND_CONE && b.angle_x > 0.5 * TEST_PI)) {
+            continue; /* not in front of the camera, or as wide as its ball */
+        }
+        ++compared;
+        assert_true((double)bounds.nearest <= nearest && (double)bounds.farthest >= farthest);
+        assert_true((double)bounds.nearest >= nearest - slack);
+        assert_true((double)bounds.farthest <= farthest + slack);
+    }
+    assert_true(compared > 4000);
+}
+
+/* The smallest ball around a cone: through apex and rim, or from 45 degrees on around the rim. */
+static void bounds_of_cones_and_pyramids_are_those_of_their_smallest_balls(void** state)
+{
+    const double width = 1920.0, height = 1080.0;
+    const hdrp_v3 white = {1, 1, 1};
+    hdrp_cull_camera c = camera_of(0.0f, -1, 1, -0.6f, 0.6f, 0.5f, 1000.0f);
+    uint64_t random = 10;
+    (void)state;
+    for (int i = 0; i < 20000; ++i) {
+        hdrp_v3 p = v3((float)test_uniform(&random, -5.0, 5.0),
+                       (float)test_uniform(&random, -3.0, 3.0), 20.0f);
+        hdrp_v3 f = v3_from(test_direction(&random));
+        float x = (float)test_uniform(&random, 0.1, 1.4),
+              y = (float)test_uniform(&random, 0.1, 1.4);
+        hdrp_cull_shape s = hdrp_cull_shape_from_light(
+            i & 1 ? hdrp_light_spot(p, f, white, 10.0f, 0.0f, x)
+                  : hdrp_light_pyramid(p, f, v3(0, 1, 0), white, 10.0f, x, y, 0.5f));
+        body b = body_of(s);
+        double angle = i & 1 ? b.angle_x : atan(hypot(tan(b.angle_x), tan(b.angle_y)));
+        bool narrow = angle < 0.25 * TEST_PI;
+        double along = b.range * (narrow ? 0.5 / cos(angle) : cos(angle));
+        double whole[4], least[4];
+        hdrp_cull_bounds r = hdrp_cull_shape_bounds(s, c, (float)width, (float)height);
+        double found[] = {(double)r.rect_px.x, (double)r.rect_px.y, (double)r.rect_px.z,
+                          (double)r.rect_px.w};
+        rectangle(b.center, b.range, c, width, height, whole);
+        rectangle(dv_mad(b.center, b.forward, along), narrow ? along : b.range * sin(angle), c,
+                  width, height, least);
+        for (int n = 0; n < 4; ++n) {
+            double wider =
+                n < 2 ? fmax(whole[n], least[n]) - found[n] : found[n] - fmin(whole[n], least[n]);
+            if (!(wider >= 0.0 && wider <= 0.1)) {
+                fail_msg("kind %u %d, edge %d: wider by %g px", b.kind, i, n, wider);
+            }
+        }
+    }
 }
 
 /* Half a ball whose flat side is all but across the axis: its rim is what reaches back. The cosine
@@ -323,6 +386,8 @@ int main(void)
         cmocka_unit_test(bounds_of_balls_are_tight),
         cmocka_unit_test(what_is_not_in_front_has_no_bounds),
         cmocka_unit_test(bounds_of_shapes_are_tighter_than_those_of_balls),
+        cmocka_unit_test(depths_of_cones_and_boxes_are_tight),
+        cmocka_unit_test(bounds_of_cones_and_pyramids_are_those_of_their_smallest_balls),
         cmocka_unit_test(a_slight_tilt_is_not_lost),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
