@@ -21,13 +21,14 @@
  *     hdrp_cull_set_project(&set, shapes, 0, count);                    screen bounds
  *     hdrp_cull_begin(&lists, &set);
  *     hdrp_cull_measure_depth(&lists, &depth, 0, lists.grid.tiles.w);   rows of tiles; or none
- *     hdrp_cull_build(&lists, &set, NULL, 0, hdrp_cull_rows(&lists), scratch, bytes);
+ *     hdrp_cull_build(&lists, &set, &depth, 0, hdrp_cull_rows(&lists), scratch, bytes);
  *
  * A shader gets grid, cells, entries and tiles in buffers, and reads them as hdrp_cull_grid.h says.
  *
  * Fine-pruned tiles, for opaque surfaces: tile_width_px = tile_height_px = 16, slice_count = 1, and
  * HDRP_CULL_PIXELS, which keeps what reaches at least one pixel; HDRP_CULL_BLOCKS notes of each
- * entry which sixteenths of the tile it reaches. Big tiles: 64 pixels, slice_count = 1, no depth.
+ * entry which sixteenths of the tile it reaches. They need depth, by which clusters only gain. Big
+ * tiles: 64 pixels, slice_count = 1, no depth.
  *
  * Lists are ordered by category, then by index, and do not depend on how the work was split. A tile
  * whose entries do not fit drops the least important shapes, of equals those of higher index, and

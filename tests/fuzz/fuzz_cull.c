@@ -1,6 +1,6 @@
 /* fuzz_cull.c - libFuzzer target: whatever the bytes say, light culling fails with an error or makes
  * lists that are well formed, hold what reaches some places and do not depend on how the work was
- * split.
+ * split. fuzz_blockers.c and fuzz_variants.c go on with these lists.
  * SPDX-License-Identifier: MIT
  *
  * Blocks of memory are allocated exactly, so that AddressSanitizer sees what is written past them,
@@ -8,13 +8,10 @@
  * on them differ. FUZZ_CULL_PRINT=1 in the environment prints what an input stands for. */
 #define HDRP_CULL_IMPLEMENTATION
 #include "cull_reference.h"
-#include "hdrp_cull.h"
+#include "fuzz.h"
 
 #include <inttypes.h>
 #include <math.h>
-#include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define SHAPES_MAX 32u
@@ -22,6 +19,8 @@
 #define CELLS_MAX  1024u
 #define PIXELS_MAX 4096u
 #define BYTES_MAX  (256u << 10)
+/* Flags that ask for one slice and a depth buffer. */
+#define OF_PIXELS (HDRP_CULL_PIXELS | HDRP_CULL_BLOCKS | HDRP_CULL_MASKS)
 
 int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);
 
@@ -32,23 +31,9 @@ const char* __asan_default_options(void)
     return "quarantine_size_mb=8:allocator_release_to_os_interval_ms=-1";
 }
 
-#define CHECK(condition)                                                                           \
-    do {                                                                                           \
-        if (!(condition)) {                                                                        \
-            fprintf(stderr, "fuzz_cull.c:%d: %s\n", __LINE__, #condition);                         \
-            abort();                                                                               \
-        }                                                                                          \
-    } while (0)
-
 /* ---- bytes ----------------------------------------------------------------------------------- */
 
-typedef struct reader {
-    const uint8_t* data;
-    size_t size, at;
-    uint32_t after; /* bytes read behind the end: they go on as a hash */
-} reader;
-
-static uint32_t read_u8(reader* r)
+uint32_t read_u8(reader* r)
 {
     if (r->at < r->size) {
         return r->data[r->at++];
@@ -56,24 +41,24 @@ static uint32_t read_u8(reader* r)
     return r->size > 0u ? hdrp_hash2(++r->after, r->data[0]) >> 24 : 0u;
 }
 
-static uint32_t read_u16(reader* r)
+uint32_t read_u16(reader* r)
 {
     uint32_t low = read_u8(r);
     return low | read_u8(r) << 8;
 }
 
-static uint32_t read_u32(reader* r)
+uint32_t read_u32(reader* r)
 {
     uint32_t low = read_u16(r);
     return low | read_u16(r) << 16;
 }
 
-static uint32_t read_below(reader* r, uint32_t end)
+uint32_t read_below(reader* r, uint32_t end)
 {
     return (end > 256u ? read_u16(r) : read_u8(r)) % end;
 }
 
-static float read_float(reader* r)
+float read_float(reader* r)
 {
     static const uint32_t special[] = {
         0x00000000u, 0x80000000u, 0x00000001u, 0x80000001u, /* zeros, denormals */
@@ -99,7 +84,7 @@ static float read_float(reader* r)
     return (float)read_u16(r) * (1.0f / 16384.0f);
 }
 
-static hdrp_v3 read_v3(reader* r)
+hdrp_v3 read_v3(reader* r)
 {
     float x = read_float(r), y = read_float(r);
     return hdrp_v3_make(x, y, read_float(r));
@@ -113,6 +98,7 @@ typedef struct frame {
     hdrp_cull_camera camera;
     uint32_t set_capacity, count;
     hdrp_cull_shape shapes[SHAPES_MAX];
+    hdrp_v4 places[SHAPES_MAX]; /* hdrp_cull_light_place, or a point */
     ref_body
         bodies[SHAPES_MAX]; /* the same, for the reference; nothing where a shape is not valid */
     bool has_depth;
@@ -137,10 +123,14 @@ static hdrp_cull_desc read_desc(reader* r)
     d.tile_height_px = read_below(r, 65u);
     d.slice_count = read_below(r, 3u) == 0u ? 1u : read_below(r, HDRP_CULL_SLICES_MAX + 1u);
     d.shape_capacity = SHAPES_MAX + read_u8(r) % 4u;
-    d.entry_capacity = read_below(r, 3u) == 0u ? 0u : read_u8(r);
-    d.flags = read_u8(r) & 15u;
-    if (d.flags & (HDRP_CULL_PIXELS | HDRP_CULL_BLOCKS)) {
+    d.flags = read_u8(r);
+    d.flags &= d.flags < 128u ? 31u : HDRP_CULL_FAST | HDRP_CULL_ONE_SERIES;
+    if (d.flags & OF_PIXELS) {
         d.slice_count = 1u;
+    }
+    if (read_below(r, 3u) != 0u) { /* few, and now and then too few */
+        d.entry_capacity = read_u8(r);
+        d.entry_capacity += d.entry_capacity < 250u ? d.slice_count : 0u;
     }
     if (read_u8(r) < 64u) {
         d.series_start_m = read_float(r);
@@ -235,7 +225,8 @@ static hdrp_light read_record(reader* r)
     return light;
 }
 
-static hdrp_cull_shape read_shape(reader* r, const hdrp_cull_camera* camera, ref_body* body)
+static hdrp_cull_shape read_shape(reader* r, const hdrp_cull_camera* camera, ref_body* body,
+                                  hdrp_v4* place)
 {
     uint32_t how = read_u8(r);
     hdrp_cull_shape shape;
@@ -257,12 +248,16 @@ static hdrp_cull_shape read_shape(reader* r, const hdrp_cull_camera* camera, ref
         light = read_light(r, how % 10u);
         shape = hdrp_cull_shape_from_light(light);
         *body = ref_body_of_light(&light, camera);
+        *place = hdrp_cull_light_place(light);
     }
     if (hdrp_cull_shape_kind(shape) == HDRP_CULL_KIND_NONE) {
         body->kind = REF_NOTHING;
     }
+    if (how < 90u || body->kind == REF_NOTHING) {
+        *place = hdrp_v4_from_v3(hdrp_v3_from_v4(shape.center_range), 1.0f);
+    }
     if (how & 64u) {
-        shape.bits.w = hdrp_bits_from_f32(read_float(r));
+        shape = hdrp_cull_shape_with_features(shape, 1u << read_below(r, 32u), ~0u, read_float(r));
     }
     return shape;
 }
@@ -273,7 +268,7 @@ static void read_depth(reader* r, frame* f)
     float lo = read_float(r), hi = read_float(r);
     uint32_t width = f->desc.width_px, height = f->desc.height_px;
     size_t count;
-    f->has_depth = how >= 48u || (f->desc.flags & (HDRP_CULL_PIXELS | HDRP_CULL_BLOCKS));
+    f->has_depth = how >= 48u || (f->desc.flags & OF_PIXELS);
     f->depth.row_stride = width + (how & 3u);
     if (how < 2u && width > 1u) {
         f->depth.row_stride = width - 1u; /* too short */
@@ -304,8 +299,7 @@ static void read_depth(reader* r, frame* f)
 
 /* ---- a frame --------------------------------------------------------------------------------- */
 
-/* A block of as many bytes, all of them the same. */
-static void* block_of(size_t bytes, int fill)
+void* block_of(size_t bytes, int fill)
 {
     void* p = malloc(bytes > 0u ? bytes : 1u);
     CHECK(p && (uintptr_t)p % HDRP_MEMORY_ALIGNMENT == 0u);
@@ -417,6 +411,26 @@ static uint32_t check_cell(const frame* f, const hdrp_cull_lists* lists, size_t 
     return hdrp_cull_last(cell, HDRP_CULL_CATEGORY_DECAL) - cell.x;
 }
 
+/* Pixels of an entry are in its blocks, and there is at least one. */
+static void check_pixels(const hdrp_cull_lists* lists, uint32_t tile)
+{
+    hdrp_u32x4 size = lists->grid.tiles, cell = lists->cells[tile];
+    uint32_t x0 = tile % size.z * size.x, y0 = tile / size.z * size.y;
+    for (uint32_t i = cell.x; i < hdrp_cull_last(cell, HDRP_CULL_CATEGORY_DECAL); ++i) {
+        uint32_t reached = 0u;
+        for (uint32_t y = y0; y < y0 + size.y && y < lists->desc.height_px; ++y) {
+            for (uint32_t x = x0; x < x0 + size.x && x < lists->desc.width_px; ++x) {
+                uint32_t word = lists->masks[hdrp_cull_mask_word(lists->grid, i, x, y)];
+                if (word >> hdrp_cull_mask_bit(lists->grid, x, y) & 1u) {
+                    CHECK(hdrp_cull_entry_covers(lists->grid, lists->entries[i], x, y));
+                    ++reached;
+                }
+            }
+        }
+        CHECK(reached > 0u);
+    }
+}
+
 static void check_lists(const frame* f, const hdrp_cull_lists* lists)
 {
     size_t tiles = (size_t)lists->grid.tiles.z * lists->grid.tiles.w, t, c;
@@ -429,6 +443,9 @@ static void check_lists(const frame* f, const hdrp_cull_lists* lists)
             of_tile += check_cell(f, lists, c, (uint32_t)t);
         }
         CHECK(of_tile <= lists->desc.entry_capacity);
+        if (lists->masks) {
+            check_pixels(lists, (uint32_t)t);
+        }
         CHECK(lists->tile_dropped[t] <= f->count);
         entries += of_tile;
         dropped += lists->tile_dropped[t];
@@ -469,6 +486,11 @@ static void check_same(const hdrp_cull_lists* a, const hdrp_cull_lists* b)
     for (c = 0; c < tiles * a->desc.slice_count; ++c) {
         uint32_t first = a->cells[c].x, last = hdrp_cull_last(a->cells[c], 3u);
         CHECK(!memcmp(a->entries + first, b->entries + first, (last - first) * sizeof *a->entries));
+        if (a->masks) {
+            uint32_t words = hdrp_cull_mask_words(a->grid);
+            CHECK(!memcmp(a->masks + first * words, b->masks + first * words,
+                          (last - first) * words * sizeof *a->masks));
+        }
     }
 }
 
@@ -479,7 +501,12 @@ static bool is_listed(const hdrp_cull_lists* lists, uint32_t shape, uint32_t x, 
     uint32_t slice = hdrp_cull_slice(lists->grid, lists->tiles[tile].z, z);
     hdrp_u32x4 cell = lists->cells[hdrp_cull_cell(lists->grid, tile, slice)];
     for (i = hdrp_cull_first(cell, 0u); i < hdrp_cull_last(cell, 3u); ++i) {
-        if (hdrp_cull_entry_index(lists->entries[i]) == shape &&
+        uint32_t word = ~0u;
+        if (lists->masks) {
+            word = lists->masks[hdrp_cull_mask_word(lists->grid, i, x, y)] >>
+                   hdrp_cull_mask_bit(lists->grid, x, y);
+        }
+        if (hdrp_cull_entry_index(lists->entries[i]) == shape && (word & 1u) != 0u &&
             hdrp_cull_entry_covers(lists->grid, lists->entries[i], x, y)) {
             return true;
         }
@@ -584,7 +611,7 @@ static void read_frame(reader* r, frame* f)
     f->count = read_below(r, SHAPES_MAX + 1u);
     f->set_capacity = read_u8(r) < 8u ? read_u8(r) : SHAPES_MAX;
     for (uint32_t i = 0u; i < f->count; ++i) {
-        f->shapes[i] = read_shape(r, &f->camera, &f->bodies[i]);
+        f->shapes[i] = read_shape(r, &f->camera, &f->bodies[i], &f->places[i]);
     }
     if (hdrp_cull_memory_size(&f->desc) > 0u) {
         read_depth(r, f);
@@ -610,6 +637,8 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
             check_masks(&f, &whole.lists);
             check_places(&f, &whole.lists);
             check_same(&whole.lists, &split.lists);
+            fuzz_variants(&r, &whole.lists, &whole.set);
+            fuzz_blockers(&r, &whole.lists, f.places, f.count);
         }
         free_result(&whole);
         free_result(&split);
