@@ -771,7 +771,6 @@ typedef struct hdrp_i_cull_scratch {
     /* Pixels of a tile. */
     float *local_x, *local_y, *pixel_x, *pixel_y, *pixel_z;
     float *row, *column_nearest, *column_farthest;
-    uint32_t* reached; /* 1 for a pixel of a block that a shape reaches */
     size_t mask_words;
     uint32_t capacity;
 } hdrp_i_cull_scratch;
@@ -855,7 +854,6 @@ static size_t hdrp_i_cull_place_scratch(hdrp_i_cull_scratch* s, const hdrp_cull_
     s->row = hdrp_i_cull_floats(&a, across_px);
     s->column_nearest = hdrp_i_cull_floats(&a, across_px);
     s->column_farthest = hdrp_i_cull_floats(&a, across_px);
-    s->reached = (uint32_t*)hdrp_i_cull_take(&a, pixels / HDRP_I_CULL_BLOCKS, sizeof(uint32_t));
     s->mask_words = hdrp_i_cull_words(d);
     s->masks = (uint32_t*)hdrp_i_cull_take(&a, n * s->mask_words, sizeof(uint32_t));
     return a.used;
@@ -1282,12 +1280,11 @@ static void hdrp_i_cull_box_blocks(const hdrp_i_cull_job* job, const hdrp_cull_t
     }
 }
 
-/* Of each block: 0 out of reach of a ball, 1 perhaps in reach, 3 inside. Returns all of them. */
-static uint32_t hdrp_i_cull_ball_in_blocks(const hdrp_i_cull_boxes* b, hdrp_v4 ball,
-                                           uint32_t found[HDRP_I_CULL_BLOCKS])
+/* The blocks that a ball may reach, a bit for each, and in the upper half those that it contains. */
+static uint32_t hdrp_i_cull_ball_in_blocks(const hdrp_i_cull_boxes* b, hdrp_v4 ball)
 {
     float r2 = ball.w * ball.w;
-    uint32_t any = 0u, i;
+    uint32_t found = 0u, i;
     HDRP_I_CULL_INDEPENDENT
     for (i = 0u; i < HDRP_I_CULL_BLOCKS; ++i) {
         float ax = b->x0[i] - ball.x, bx = ball.x - b->x1[i];
@@ -1298,10 +1295,9 @@ static uint32_t hdrp_i_cull_ball_in_blocks(const hdrp_i_cull_boxes* b, hdrp_v4 b
         float near_z = hdrp_max(hdrp_max(az, bz), 0.0f), far_z = hdrp_min(az, bz);
         float nearest2 = near_x * near_x + near_y * near_y + near_z * near_z;
         float farthest2 = far_x * far_x + far_y * far_y + far_z * far_z;
-        found[i] = (nearest2 <= r2 ? 1u : 0u) | (farthest2 <= r2 ? 2u : 0u);
-        any |= found[i];
+        found |= ((nearest2 <= r2 ? 1u : 0u) | (farthest2 <= r2 ? 0x10000u : 0u)) << i;
     }
-    return any;
+    return found;
 }
 
 HDRP_FN float hdrp_i_cull_distance2(hdrp_v3 a, hdrp_v3 b)
@@ -1353,25 +1349,23 @@ static void hdrp_i_cull_balls_around_pixels(const hdrp_i_cull_job* job)
     }
 }
 
-/* Which of some pixels a shape of a kind reaches; returns whether it is any. A constant kind leaves
- * a loop without the other ones in it. */
+/* Which of some pixels, at most 32, a shape of a kind reaches, a bit for each. A constant kind
+ * leaves a loop without the other ones in it. */
 HDRP_FN uint32_t hdrp_i_cull_reach_kind(const hdrp_i_cull_scratch* s, hdrp_cull_shape shape,
                                         hdrp_u32 kind, uint32_t first, uint32_t count)
 {
     const float* x = s->pixel_x + first;
     const float* y = s->pixel_y + first;
     const float* z = s->pixel_z + first;
-    uint32_t* reached = s->reached;
-    uint32_t any = 0u, i;
+    uint32_t reached = 0u, i;
     shape.bits.x = kind;
     HDRP_I_CULL_INDEPENDENT
     for (i = 0u; i < count; ++i) {
         float in = hdrp_cull_shape_contains(shape, hdrp_v3_make(x[i], y[i], z[i]));
         float seen = z[i] >= 0.0f ? in : 0.0f;
-        reached[i] = seen > 0.0f ? 1u : 0u;
-        any |= reached[i];
+        reached |= (seen > 0.0f ? 1u : 0u) << i;
     }
-    return any;
+    return reached;
 }
 
 static uint32_t hdrp_i_cull_reach(const hdrp_i_cull_scratch* s, const hdrp_cull_shape* shape,
@@ -1391,20 +1385,33 @@ static uint32_t hdrp_i_cull_reach(const hdrp_i_cull_scratch* s, const hdrp_cull_
     }
 }
 
-/* Notes the pixels of a block that a hit reaches: those that were found, or all. */
-static void hdrp_i_cull_mask_block(const hdrp_i_cull_scratch* s, uint32_t* mask, uint32_t block,
-                                   uint32_t of_block, int found)
+/* Notes pixels, at most 32 from one on, in a mask. */
+static void hdrp_i_cull_note(uint32_t* mask, uint32_t first, uint32_t pixels)
 {
-    uint32_t at = block * of_block, first, i;
-    for (first = 0u; first < of_block; first += i, at += i) {
-        uint32_t room = 32u - at % 32u, left = of_block - first, word = 0u;
-        uint32_t count = left < room ? left : room;
-        const uint32_t* reached = s->reached + first;
-        for (i = 0u; i < count; ++i) {
-            word |= (found ? reached[i] : 1u) << i;
-        }
-        mask[at / 32u] |= word << (at % 32u);
+    uint32_t shift = first % 32u;
+    mask[first / 32u] |= pixels << shift;
+    if (shift > 0u && pixels >> (32u - shift) > 0u) {
+        mask[first / 32u + 1u] |= pixels >> (32u - shift);
     }
+}
+
+/* Whether a shape reaches a pixel of a block; notes which, or all of them where that is known. */
+static uint32_t hdrp_i_cull_ask_block(const hdrp_i_cull_job* job, uint32_t i, uint32_t block,
+                                      int inside, uint32_t* mask)
+{
+    uint32_t of_block = job->lists->grid.cells.z * job->lists->grid.cells.w, any = 0u, at;
+    for (at = block * of_block; at < (block + 1u) * of_block; at += 32u) {
+        uint32_t left = (block + 1u) * of_block - at, count = left < 32u ? left : 32u;
+        uint32_t pixels = inside ? 0xffffffffu >> (32u - count)
+                                 : hdrp_i_cull_reach(&job->s, &job->set->shapes[i], at, count);
+        any |= pixels;
+        if (job->s.mask_words > 0u) {
+            hdrp_i_cull_note(mask, at, pixels);
+        } else if (any > 0u) {
+            break;
+        }
+    }
+    return any > 0u ? 1u : 0u;
 }
 
 static void hdrp_i_cull_fill_mask(uint32_t* mask, size_t words, uint32_t word)
@@ -1420,26 +1427,20 @@ static uint32_t hdrp_i_cull_blocks_reached(const hdrp_i_cull_job* job, uint32_t 
                                            const hdrp_i_cull_boxes* boxes, uint32_t* mask)
 {
     const hdrp_i_cull_scratch* s = &job->s;
-    const hdrp_cull_shape* shape = &job->set->shapes[s->candidate[m]];
-    uint32_t of_block = job->lists->grid.cells.z * job->lists->grid.cells.w;
-    uint32_t found[HDRP_I_CULL_BLOCKS], bits = 0u, block;
-    /* Inside its ball is inside a shape only if it is one. */
-    uint32_t sure = s->is_ball[m] ? 2u : 0u;
     int all = (job->lists->desc.flags & HDRP_CULL_BLOCKS) != 0u;
-    uint32_t any = hdrp_i_cull_ball_in_blocks(
-        boxes, hdrp_v4_make(s->x[m], s->y[m], s->z[m], s->radius[m]), found);
-    if (any == 0u || (!all && (any & sure))) {
-        return any == 0u ? 0u : 0xffffu;
+    uint32_t found =
+        hdrp_i_cull_ball_in_blocks(boxes, hdrp_v4_make(s->x[m], s->y[m], s->z[m], s->radius[m]));
+    /* Inside its ball is inside a shape only if it is one. */
+    uint32_t bits = s->is_ball[m] ? found >> 16 : 0u, rest = found & 0xffffu & ~bits, block;
+    for (block = 0u; s->mask_words > 0u && bits >> block > 0u; ++block) {
+        if (bits >> block & 1u) {
+            hdrp_i_cull_ask_block(job, s->candidate[m], block, 1, mask);
+        }
     }
-    for (block = 0u; block < HDRP_I_CULL_BLOCKS && (all || bits == 0u); ++block) {
-        uint32_t inside = found[block] & sure, reached = inside ? 1u : 0u;
-        if (found[block] > 0u && !inside) {
-            reached = hdrp_i_cull_reach(s, shape, block * of_block, of_block);
+    for (block = 0u; rest >> block > 0u && (all || bits == 0u); ++block) {
+        if (rest >> block & 1u) {
+            bits |= hdrp_i_cull_ask_block(job, s->candidate[m], block, 0, mask) << block;
         }
-        if (reached && s->mask_words > 0u) {
-            hdrp_i_cull_mask_block(s, mask, block, of_block, !inside);
-        }
-        bits |= reached << block;
     }
     return all || bits == 0u ? bits : 0xffffu;
 }
