@@ -1280,7 +1280,7 @@ static void hdrp_i_cull_box_blocks(const hdrp_i_cull_job* job, const hdrp_cull_t
     }
 }
 
-/* The blocks that a ball may reach, a bit for each, and in the upper half those that it contains. */
+/* The blocks that a ball may reach, a bit for each; in the upper half those that it contains. */
 static uint32_t hdrp_i_cull_ball_in_blocks(const hdrp_i_cull_boxes* b, hdrp_v4 ball)
 {
     float r2 = ball.w * ball.w;
