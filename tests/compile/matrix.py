@@ -6,19 +6,21 @@ Writes small sources for every hdrp*.h in the include folder (default: the heade
 compiles them; a new header is covered by existing. Groups:
 
     c_gcc c_clang cxx_gcc cxx_clang
-             each header alone and twice in every standard, without and with its implementation; in
-             every ordered pair; before and after <math.h> and <vulkan/vulkan.h>; after the macros
-             of <windows.h>. gcc also optimises and keeps every function, for its flow warnings
+             each header alone and twice in every standard, without and with its implementation; all
+             of them forwards and backwards; before and after <math.h> and <vulkan/vulkan.h>; after
+             the macros of <windows.h>. gcc also optimises and keeps every function, for its flow
+             warnings
     m32      each header for a 32-bit target
     link     two translation units, C and C++ mixed, one with the implementations: linked and run
     glsl glsl_es hlsl
              shaders that call every formula: SPIR-V, validated, translated by SPIRV-Cross to Metal,
-             HLSL and GLSL; each header twice and in every ordered pair
+             HLSL and GLSL; each header twice, all of them forwards and backwards
     opencl cuda
              kernels that call every formula, checked by clang
 
---full uses every standard everywhere and compiles what SPIRV-Cross wrote; --brief uses one standard
-and leaves out what does not depend on how the headers are cut into files.
+--full uses every standard everywhere, includes every ordered pair by itself and compiles what
+SPIRV-Cross wrote; --brief uses one standard and leaves out what does not depend on how the headers
+are cut into files.
 A failure prints the command and what the compiler said. Exit status 77: a program is missing.
 """
 import argparse
@@ -100,10 +102,18 @@ class Matrix:
         self.out = options.out.resolve()
         self.full, self.brief = options.full, options.brief
         self.headers = sorted(self.include.glob("hdrp*.h"))
-        self.pairs = [(a, b) for a in self.headers for b in self.headers if a != b]
+        self.orders = self.orders_of_inclusion()
         self.implementations = {path: sorted(set(IMPLEMENTATION.findall(path.read_text())))
                                 for path in self.headers}
         self.called = 0
+
+    def orders_of_inclusion(self):
+        """name -> headers, so that each comes somewhere before and after every other: all of them
+        forwards and backwards, or every pair by itself."""
+        if self.full:
+            return {f"{a.stem}-{b.stem}": [a, b]
+                    for a in self.headers for b in self.headers if a != b}
+        return {"all-forwards": self.headers, "all-backwards": self.headers[::-1]}
 
     def standards(self, language):
         return [ONE_STANDARD[language]] if self.brief else STANDARDS[language]
@@ -142,8 +152,8 @@ class Matrix:
             texts[f"{header.stem}-before-{name}"] = include + other
         return texts
 
-    def pair_text(self, a, b):
-        return f'{self.define(a, b)}#include "{a.name}"\n#include "{b.name}"\n'
+    def order_text(self, headers):
+        return self.define(*headers) + "".join(f'#include "{h.name}"\n' for h in headers)
 
     def host(self, compiler, language):
         few, jobs = {}, []
@@ -159,7 +169,7 @@ class Matrix:
                         self.define(header) + f'#include "{header.name}"\n',
                         ["-O2", "-fkeep-inline-functions", "-DHDRP_FN=static inline", "-c", "-o",
                          "/dev/null"]))
-        few.update({f"{a.stem}-{b.stem}": self.pair_text(a, b) for a, b in self.pairs})
+        few.update({name: self.order_text(headers) for name, headers in self.orders.items()})
         return jobs + [self.host_job(compiler, language, standard, name, text)
                        for name, text in few.items() for standard in self.few_standards(language)]
 
@@ -255,7 +265,7 @@ class Matrix:
         if language == "glsl_es":
             # Linking instead of -V applies the rules of OpenGL ES itself, not those of Vulkan.
             commands.append(["glslangValidator", "-l", f"-I{self.include}", source])
-        if calls_all:
+        if calls_all and not self.brief:  # the text of formulas is the same in all files
             metal, hlsl, glsl = (self.out / f"{name}.{s}"
                                  for s in ("metal", "out.hlsl", f"out.{stage}"))
             version = ["--version", "450"]
@@ -272,6 +282,7 @@ class Matrix:
 
     def shaders(self, language, stages):
         jobs = []
+        stages = stages[:1] if self.brief else stages
         define = "HDRP_HLSL" if language == "hlsl" else "GL_core_profile"
         for header in self.headers:
             functions = self.shared_functions(header, define)
@@ -281,8 +292,8 @@ class Matrix:
             jobs.append(self.shader_job(language, stages[0], f"{header.stem}-twice",
                                         [header.name, header.name]))
         if self.full or language != "glsl_es":
-            jobs += [self.shader_job(language, stages[0], f"{a.stem}-{b.stem}", [a.name, b.name])
-                     for a, b in self.pairs]
+            jobs += [self.shader_job(language, stages[0], name, [h.name for h in headers])
+                     for name, headers in self.orders.items()]
         return jobs
 
     # Kernels
