@@ -605,12 +605,6 @@ HDRP_API hdrp_result hdrp_cull_init(hdrp_cull_lists* lists, const hdrp_cull_desc
     return r;
 }
 
-static float hdrp_i_cull_tile_scale(const hdrp_cull_lists* lists, float farthest_m)
-{
-    int fixed = (lists->desc.flags & HDRP_CULL_ONE_SERIES) != 0u;
-    return fixed ? lists->grid.series.w : hdrp_cull_series_scale(lists->grid, farthest_m);
-}
-
 HDRP_API hdrp_result hdrp_cull_begin(hdrp_cull_lists* lists, const hdrp_cull_set* set)
 {
     const hdrp_cull_desc* d;
@@ -644,31 +638,35 @@ HDRP_API hdrp_result hdrp_cull_begin(hdrp_cull_lists* lists, const hdrp_cull_set
 /* Pixels of a row that are read together. */
 #define HDRP_I_CULL_RUN 64u
 
-/* A depth in front of the camera; -1 for sky, NaN and what is behind. Cleared depth, turned into
- * metres, may fall short of the far distance by a rounding. */
-HDRP_FN float hdrp_i_cull_seen(float z, float near_m, float far_m)
-{
-    float seen = z < near_m ? near_m : z;
-    float here = z < far_m * (1.0f - HDRP_CULL_MARGIN) ? seen : -1.0f;
-    return z >= 0.0f ? here : -1.0f;
-}
-
-HDRP_FN void hdrp_i_cull_read(const hdrp_cull_depth* depth, const hdrp_cull_camera* camera,
-                              const float* texels, uint32_t count, float* z)
+HDRP_FN void hdrp_i_cull_read_device(hdrp_depth_params device, const hdrp_cull_camera* camera,
+                                     const float* texels, uint32_t count, float* z)
 {
     float near_m = camera->eye_near.w, far_m = camera->right_far.w;
     uint32_t i;
+    HDRP_I_CULL_INDEPENDENT
+    for (i = 0u; i < count; ++i) {
+        z[i] = hdrp_cull_opaque_depth(hdrp_view_depth(device, texels[i]), near_m, far_m);
+    }
+}
+
+HDRP_FN void hdrp_i_cull_read_metres(const hdrp_cull_camera* camera, const float* texels,
+                                     uint32_t count, float* z)
+{
+    float near_m = camera->eye_near.w, far_m = camera->right_far.w;
+    uint32_t i;
+    HDRP_I_CULL_INDEPENDENT
+    for (i = 0u; i < count; ++i) {
+        z[i] = hdrp_cull_opaque_depth(texels[i], near_m, far_m);
+    }
+}
+
+static void hdrp_i_cull_read(const hdrp_cull_depth* depth, const hdrp_cull_camera* camera,
+                             const float* texels, uint32_t count, float* z)
+{
     if (depth->device) {
-        hdrp_depth_params device = *depth->device;
-        HDRP_I_CULL_INDEPENDENT
-        for (i = 0u; i < count; ++i) {
-            z[i] = hdrp_i_cull_seen(hdrp_view_depth(device, texels[i]), near_m, far_m);
-        }
+        hdrp_i_cull_read_device(*depth->device, camera, texels, count, z);
     } else {
-        HDRP_I_CULL_INDEPENDENT
-        for (i = 0u; i < count; ++i) {
-            z[i] = hdrp_i_cull_seen(texels[i], near_m, far_m);
-        }
+        hdrp_i_cull_read_metres(camera, texels, count, z);
     }
 }
 
@@ -684,16 +682,6 @@ HDRP_FN void hdrp_i_cull_widen(const float* z, uint32_t count, float* nearest, f
     }
 }
 
-/* The range of a tile as its columns of pixels leave it. */
-static hdrp_v4 hdrp_i_cull_tile_of_range(const hdrp_cull_lists* lists, float nearest,
-                                         float farthest)
-{
-    if (farthest < 0.0f) { /* sky alone */
-        return hdrp_v4_make(1.0f, -1.0f, lists->grid.series.w, 0.0f);
-    }
-    return hdrp_v4_make(nearest, farthest, hdrp_i_cull_tile_scale(lists, farthest), 0.0f);
-}
-
 /* The ranges of a row of tiles, in which y and z are the pixels of the row. */
 static void hdrp_i_cull_depth_row(hdrp_cull_lists* lists, const hdrp_cull_depth* depth,
                                   uint32_t row)
@@ -702,6 +690,7 @@ static void hdrp_i_cull_depth_row(hdrp_cull_lists* lists, const hdrp_cull_depth*
     uint32_t y0 = row * lists->grid.tiles.y, y1 = y0 + lists->grid.tiles.y,
              width = lists->desc.width_px;
     uint32_t x, y, i, column = 0u;
+    uint32_t one_series = (lists->desc.flags & HDRP_CULL_ONE_SERIES) != 0u;
     float lo = HDRP_FLT_MAX, hi = -1.0f;
     y1 = y1 < lists->desc.height_px ? y1 : lists->desc.height_px;
     for (x = 0u; x < width; x += HDRP_I_CULL_RUN) {
@@ -720,7 +709,7 @@ static void hdrp_i_cull_depth_row(hdrp_cull_lists* lists, const hdrp_cull_depth*
             lo = hdrp_min(nearest[i], lo);
             hi = hdrp_max(farthest[i], hi);
             if ((x + i + 1u) % lists->grid.tiles.x == 0u || x + i + 1u == width) {
-                tiles[column++] = hdrp_i_cull_tile_of_range(lists, lo, hi);
+                tiles[column++] = hdrp_cull_tile_of_depths(lists->grid, lo, hi, one_series);
                 lo = HDRP_FLT_MAX;
                 hi = -1.0f;
             }

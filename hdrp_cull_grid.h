@@ -15,7 +15,7 @@
  * There is no algorithm layer.
  *
  * >>index of the functions, without hdrp_cull_ (written by tools/api_check.py --write)
- *   grid: log2 series_scale grid_make tile_of_pixel slice cell
+ *   grid: log2 series_scale opaque_depth tile_of_depths grid_make tile_of_pixel slice cell
  *   lists: first last entry_index entry_covers mask_words mask_word mask_bit lowest_bit
  * >>end */
 #ifndef HDRP_CULL_GRID_H
@@ -84,6 +84,42 @@ HDRP_FN float hdrp_cull_series_scale(hdrp_cull_grid grid, float farthest_m)
 {
     float octaves = hdrp_cull_log2(farthest_m) - grid.series.y;
     return hdrp_f32_from_u32(grid.cells.x >> 1) / hdrp_max(octaves, 1e-3f);
+}
+
+/** What the depth of a pixel counts for in hdrp_cull_measure_depth.
+ *  z_view   any  m
+ *  near_m   [1e-6,1e9]   camera.eye_near.w
+ *  far_m    [1e-6,1e18]  camera.right_far.w
+ *  returns  [-1,1e18]  the depth in front of the camera; -1 where nothing opaque is seen
+ *  edges    what is in front of the near distance counts as at it; NaN, negative depths, and those
+ *           beyond the far distance or within a millionth of it are sky
+ *  error    none: a selection
+ *  source   a definition
+ *  note     cleared depth, turned into metres, may fall short of the far distance by a rounding */
+HDRP_FN float hdrp_cull_opaque_depth(float z_view, float near_m, float far_m)
+{
+    float seen = z_view < near_m ? near_m : z_view;
+    float here = z_view < far_m * (1.0f - HDRP_CULL_MARGIN) ? seen : -1.0f;
+    return z_view >= 0.0f ? here : -1.0f;
+}
+
+/** The vector of a tile, from the depths of its pixels by hdrp_cull_opaque_depth.
+ *  grid        valid
+ *  nearest_m   any    of the pixels that are not sky
+ *  farthest_m  any    of all pixels: negative where all are sky
+ *  one_series  [0,1]  1 with HDRP_CULL_ONE_SERIES
+ *  returns     any    x, y and z as they are kept for shaders, w 0
+ *  edges       where all is sky, or farthest_m NaN, nearest and farthest are 1 and -1
+ *  error       none: a selection, and hdrp_cull_series_scale
+ *  source      a definition */
+HDRP_FN hdrp_v4 hdrp_cull_tile_of_depths(hdrp_cull_grid grid, float nearest_m, float farthest_m,
+                                         hdrp_u32 one_series)
+{
+    float own = hdrp_cull_series_scale(grid, farthest_m);
+    float scale = one_series != 0u ? grid.series.w : own;
+    float z = farthest_m >= 0.0f ? scale : grid.series.w;
+    float nearest = farthest_m >= 0.0f ? nearest_m : 1.0f;
+    return hdrp_v4_make(nearest, farthest_m >= 0.0f ? farthest_m : -1.0f, z, 0.0f);
 }
 
 /* x, but at least 1 and at most a limit. */

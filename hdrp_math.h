@@ -1926,11 +1926,16 @@ HDRP_FN float hdrp_device_depth(hdrp_depth_params params, float z_view)
 
 typedef enum hdrp_result {
     HDRP_OK = 0,
-    HDRP_ERROR_NULL_POINTER,     /* a required pointer is NULL */
-    HDRP_ERROR_BAD_ARGUMENT,     /* a value is outside its documented range, or not finite */
-    HDRP_ERROR_MEMORY_TOO_SMALL, /* the block is smaller than hdrp_<module>_memory_size said */
-    HDRP_ERROR_MEMORY_ALIGNMENT, /* the block is not aligned to HDRP_MEMORY_ALIGNMENT bytes */
-    HDRP_ERROR_TOO_LARGE         /* a size does not fit the arithmetic of the target */
+    HDRP_ERROR_NULL_POINTER,         /* a required pointer is NULL */
+    HDRP_ERROR_BAD_ARGUMENT,         /* a value is outside its documented range, or not finite */
+    HDRP_ERROR_MEMORY_TOO_SMALL,     /* the block is smaller than hdrp_<module>_memory_size said */
+    HDRP_ERROR_MEMORY_ALIGNMENT,     /* the block is not aligned to HDRP_MEMORY_ALIGNMENT bytes */
+    HDRP_ERROR_TOO_LARGE,            /* a size does not fit the arithmetic of the target */
+    HDRP_ERROR_OUT_OF_HOST_MEMORY,   /* a graphics driver found no memory */
+    HDRP_ERROR_OUT_OF_DEVICE_MEMORY, /* a graphics device or a pool of it has no room */
+    HDRP_ERROR_UNSUPPORTED,          /* a device lacks what is needed */
+    HDRP_ERROR_DEVICE_LOST,          /* the device has to be made again */
+    HDRP_ERROR_DRIVER                /* another failure of a graphics driver */
 } hdrp_result;
 
 #define HDRP_MEMORY_ALIGNMENT 16
@@ -1954,6 +1959,16 @@ static inline const char* hdrp_result_string(hdrp_result r)
         return "the memory block is not aligned";
     case HDRP_ERROR_TOO_LARGE:
         return "a size is too large for this target";
+    case HDRP_ERROR_OUT_OF_HOST_MEMORY:
+        return "the graphics driver is out of memory";
+    case HDRP_ERROR_OUT_OF_DEVICE_MEMORY:
+        return "the graphics device is out of memory";
+    case HDRP_ERROR_UNSUPPORTED:
+        return "the graphics device lacks what is needed";
+    case HDRP_ERROR_DEVICE_LOST:
+        return "the graphics device is lost";
+    case HDRP_ERROR_DRIVER:
+        return "the graphics driver failed";
     }
     return "unknown result";
 }

@@ -2,7 +2,7 @@
 """Writes the one-file headers: amalgamate.py FOLDER
 
 For each hdrp_<module>.h a file of the same name that needs no other hdrp file, and hdrp.h with all
-of them. A one-file header is the plain headers one after the other, what is needed first, with
+of them but those that need a header of a graphics API. A one-file header is the plain headers one after the other, what is needed first, with
 their include lines removed and their guards kept. So any of the files may be included together, in
 C, C++, GLSL and HLSL alike, and an HDRP_<MODULE>_IMPLEMENTATION works as in the plain header.
 """
@@ -13,6 +13,7 @@ import sys
 import hdrp_api
 
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]+"(?P<name>hdrp_\w+\.h)"[^\n]*\n', re.M)
+GRAPHICS = re.compile(r"^#include <vulkan/", re.M)
 VERSION = re.compile(r"^#define HDRP_VERSION_(?:MAJOR|MINOR|PATCH) (\d+)", re.M)
 
 
@@ -51,7 +52,8 @@ def main():
     version = ".".join(VERSION.findall(texts["hdrp_math.h"]))
     everything = []
     for name in texts:
-        in_order(name, texts, everything)
+        if not GRAPHICS.search(texts[name]):
+            in_order(name, texts, everything)
         files = in_order(name, texts, [])
         (folder / name).write_text(amalgamation(name, files, texts, version))
     (folder / "hdrp.h").write_text(amalgamation("hdrp.h", everything, texts, version))

@@ -3,7 +3,8 @@
     [--include FOLDER] [--full | --brief] [--jobs N]
 
 Writes small sources for every hdrp*.h in the include folder (default: the headers of this tree) and
-compiles them; a new header is covered by existing. Groups:
+compiles them; a new header is covered by existing. One that includes a Vulkan header is left out
+where there is none. Groups:
 
     c_gcc c_clang cxx_gcc cxx_clang
              each header alone and twice in every standard, without and with its implementation; all
@@ -25,6 +26,7 @@ A failure prints the command and what the compiler said. Exit status 77: a progr
 """
 import argparse
 import concurrent.futures
+import functools
 import pathlib
 import re
 import shlex
@@ -47,7 +49,7 @@ ONE_STANDARD = {"c": "c99", "cxx": "c++11"}
 DRIVER = {("gcc", "c"): "gcc", ("gcc", "cxx"): "g++",
           ("clang", "c"): "clang", ("clang", "cxx"): "clang++"}
 SUFFIX = {"c": "c", "cxx": "cpp"}
-IMPLEMENTATION = re.compile(r"\bHDRP_[A-Z0-9]+_IMPLEMENTATION\b")
+IMPLEMENTATION = re.compile(r"\bHDRP_[A-Z0-9_]+_IMPLEMENTATION\b")
 SYSTEM = "".join(f"#include <{name}.h>\n"
                  for name in ("math", "stddef", "stdint", "stdio", "stdlib", "string"))
 # What windows.h leaves behind; standard headers do not survive it either, so they come first.
@@ -101,7 +103,8 @@ class Matrix:
         self.include = options.include.resolve()
         self.out = options.out.resolve()
         self.full, self.brief = options.full, options.brief
-        self.headers = sorted(self.include.glob("hdrp*.h"))
+        self.headers = sorted(path for path in self.include.glob("hdrp*.h")
+                              if has_vulkan() or "<vulkan/" not in path.read_text())
         self.orders = self.orders_of_inclusion()
         self.implementations = {path: sorted(set(IMPLEMENTATION.findall(path.read_text())))
                                 for path in self.headers}
@@ -354,6 +357,12 @@ GROUPS = {
     "opencl": (["gcc", "clang"], Matrix.opencl),
     "cuda": (["gcc", "clang"], Matrix.cuda),
 }
+
+
+@functools.lru_cache(maxsize=None)
+def has_vulkan():
+    return subprocess.run(["gcc", "-x", "c", "-include", "vulkan/vulkan_core.h", "-fsyntax-only",
+                           "/dev/null"], capture_output=True).returncode == 0
 
 
 def has_32_bit_libraries():

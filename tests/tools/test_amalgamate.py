@@ -44,7 +44,8 @@ class Amalgamate(unittest.TestCase):
             self.assertIn("Permission is hereby granted", text[-1200:])
         for module in modules:
             guard = "#ifndef " + module.upper().replace(".", "_") + "\n"
-            self.assertEqual(contents[0]["hdrp.h"].count(guard), 1, module)
+            self.assertEqual(contents[0][module].count(guard), 1, module)
+            self.assertEqual(contents[0]["hdrp.h"].count(guard), module != "hdrp_gpu_vk.h", module)
 
 
 if __name__ == "__main__":

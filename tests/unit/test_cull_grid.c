@@ -163,6 +163,36 @@ static void scales_are_finite_for_every_depth(void** state)
     assert_true(hdrp_cull_series_scale(grid_of(0.1f, 1e6f, 1), 10.0f) == 0.0f);
 }
 
+static void depths_of_pixels_are_opaque_or_sky(void** state)
+{
+    (void)state;
+    assert_true(hdrp_cull_opaque_depth(5.0f, 0.5f, 100.0f) == 5.0f);
+    assert_true(hdrp_cull_opaque_depth(0.5f, 0.5f, 100.0f) == 0.5f);
+    assert_true(hdrp_cull_opaque_depth(0.1f, 0.5f, 100.0f) == 0.5f);
+    assert_true(hdrp_cull_opaque_depth(0.0f, 0.5f, 100.0f) == 0.5f);
+    assert_true(hdrp_cull_opaque_depth(-0.1f, 0.5f, 100.0f) == -1.0f);
+    assert_true(hdrp_cull_opaque_depth(99.99f, 0.5f, 100.0f) == 99.99f);
+    assert_true(hdrp_cull_opaque_depth(99.99995f, 0.5f, 100.0f) == -1.0f);
+    assert_true(hdrp_cull_opaque_depth(100.0f, 0.5f, 100.0f) == -1.0f);
+    assert_true(hdrp_cull_opaque_depth((float)INFINITY, 0.5f, 100.0f) == -1.0f);
+    assert_true(hdrp_cull_opaque_depth((float)NAN, 0.5f, 100.0f) == -1.0f);
+}
+
+static void tiles_hold_their_depths_and_a_scale(void** state)
+{
+    hdrp_cull_grid g = grid_of(0.5f, 200.0f, 64);
+    hdrp_v4 tile = hdrp_cull_tile_of_depths(g, 2.0f, 8.0f, 0u);
+    (void)state;
+    assert_true(tile.x == 2.0f && tile.y == 8.0f && tile.w == 0.0f);
+    assert_true(tile.z == 8.0f); /* 32 slices in the 4 octaves from 0.5 m to 8 m */
+    tile = hdrp_cull_tile_of_depths(g, 2.0f, 8.0f, 1u);
+    assert_true(tile.x == 2.0f && tile.y == 8.0f && tile.z == g.series.w);
+    tile = hdrp_cull_tile_of_depths(g, HDRP_FLT_MAX, -1.0f, 0u);
+    assert_true(tile.x == 1.0f && tile.y == -1.0f && tile.z == g.series.w && tile.w == 0.0f);
+    tile = hdrp_cull_tile_of_depths(g, 1.0f, (float)NAN, 0u);
+    assert_true(tile.x == 1.0f && tile.y == -1.0f && tile.z == g.series.w);
+}
+
 static void pixels_find_their_tile_and_cell(void** state)
 {
     hdrp_cull_grid g = grid_of(0.5f, 200.0f, 64);
@@ -260,6 +290,8 @@ int main(void)
         cmocka_unit_test(every_slice_is_reached_in_order),
         cmocka_unit_test(the_series_without_depth_ends_where_it_was_told),
         cmocka_unit_test(scales_are_finite_for_every_depth),
+        cmocka_unit_test(depths_of_pixels_are_opaque_or_sky),
+        cmocka_unit_test(tiles_hold_their_depths_and_a_scale),
         cmocka_unit_test(pixels_find_their_tile_and_cell),
         cmocka_unit_test(cells_know_their_categories),
         cmocka_unit_test(entries_hold_an_index_and_blocks),

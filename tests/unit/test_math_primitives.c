@@ -138,7 +138,7 @@ static void a_cross_product_is_the_determinant(void** state)
 static void every_result_has_a_sentence_of_its_own(void** state)
 {
     (void)state;
-    for (int i = HDRP_OK; i <= HDRP_ERROR_TOO_LARGE + 1; ++i) {
+    for (int i = HDRP_OK; i <= HDRP_ERROR_DRIVER + 1; ++i) {
         assert_true(hdrp_result_string((hdrp_result)i)[0] != '\0');
         for (int k = HDRP_OK; k < i; ++k) {
             assert_string_not_equal(hdrp_result_string((hdrp_result)i),

@@ -1,0 +1,609 @@
+/* test_gpu_context.c - contexts and resources: what is missing, what fails, what is left behind.
+ * SPDX-License-Identifier: MIT
+ *
+ * Between the header and the driver stand functions of this file, which count objects and fail when
+ * they are told to. */
+#include "gpu_test.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static gpu_device device;
+
+/* ---- a driver that fails --------------------------------------------------------------------- */
+
+static struct {
+    int live;                                /* objects and pieces of memory */
+    int calls, fail_at;                      /* of functions that may fail; -1: none fails */
+    VkResult failure;                        /* what they return then */
+    const VkAllocationCallbacks* allocation; /* that every call must be given */
+    VkPipelineCache cache;                   /* likewise, calls that make pipelines */
+    const char* hidden;                      /* a function that the driver has not */
+    int names;                               /* of objects, for debuggers */
+} driver;
+
+static bool fails(void)
+{
+    return driver.calls++ == driver.fail_at;
+}
+
+#define CREATE(name, info_type, handle_type)                                                       \
+    static VKAPI_ATTR VkResult VKAPI_CALL my_vk##name(VkDevice d, const info_type* info,           \
+                                                      const VkAllocationCallbacks* allocation,     \
+                                                      handle_type* handle)                         \
+    {                                                                                              \
+        VkResult r = driver.failure;                                                               \
+        assert_ptr_equal(allocation, driver.allocation);                                           \
+        if (!fails()) {                                                                            \
+            r = vk##name(d, info, allocation, handle);                                             \
+            driver.live += r == VK_SUCCESS;                                                        \
+        }                                                                                          \
+        return r;                                                                                  \
+    }
+
+#define DESTROY(name, handle_type)                                                                 \
+    static VKAPI_ATTR void VKAPI_CALL my_vk##name(VkDevice d, handle_type handle,                  \
+                                                  const VkAllocationCallbacks* allocation)         \
+    {                                                                                              \
+        assert_ptr_equal(allocation, driver.allocation);                                           \
+        driver.live -= handle != VK_NULL_HANDLE;                                                   \
+        vk##name(d, handle, allocation);                                                           \
+    }
+
+CREATE(AllocateMemory, VkMemoryAllocateInfo, VkDeviceMemory)
+CREATE(CreateBuffer, VkBufferCreateInfo, VkBuffer)
+CREATE(CreateDescriptorPool, VkDescriptorPoolCreateInfo, VkDescriptorPool)
+CREATE(CreateDescriptorSetLayout, VkDescriptorSetLayoutCreateInfo, VkDescriptorSetLayout)
+CREATE(CreateImage, VkImageCreateInfo, VkImage)
+CREATE(CreateImageView, VkImageViewCreateInfo, VkImageView)
+CREATE(CreatePipelineLayout, VkPipelineLayoutCreateInfo, VkPipelineLayout)
+CREATE(CreateShaderModule, VkShaderModuleCreateInfo, VkShaderModule)
+DESTROY(FreeMemory, VkDeviceMemory)
+DESTROY(DestroyBuffer, VkBuffer)
+DESTROY(DestroyDescriptorPool, VkDescriptorPool)
+DESTROY(DestroyDescriptorSetLayout, VkDescriptorSetLayout)
+DESTROY(DestroyImage, VkImage)
+DESTROY(DestroyImageView, VkImageView)
+DESTROY(DestroyPipeline, VkPipeline)
+DESTROY(DestroyPipelineLayout, VkPipelineLayout)
+DESTROY(DestroyShaderModule, VkShaderModule)
+
+static VKAPI_ATTR VkResult VKAPI_CALL my_vkCreateComputePipelines(
+    VkDevice d, VkPipelineCache cache, uint32_t count, const VkComputePipelineCreateInfo* infos,
+    const VkAllocationCallbacks* allocation, VkPipeline* pipelines)
+{
+    VkResult r = driver.failure;
+    assert_ptr_equal(allocation, driver.allocation);
+    assert_true(cache == driver.cache);
+    assert_int_equal(count, 1);
+    if (!fails()) {
+        r = vkCreateComputePipelines(d, cache, count, infos, allocation, pipelines);
+        driver.live += r == VK_SUCCESS;
+    }
+    return r;
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL my_vkBindBufferMemory(VkDevice d, VkBuffer buffer,
+                                                            VkDeviceMemory memory,
+                                                            VkDeviceSize offset)
+{
+    return fails() ? driver.failure : vkBindBufferMemory(d, buffer, memory, offset);
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL my_vkBindImageMemory(VkDevice d, VkImage image,
+                                                           VkDeviceMemory memory,
+                                                           VkDeviceSize offset)
+{
+    return fails() ? driver.failure : vkBindImageMemory(d, image, memory, offset);
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL my_vkAllocateDescriptorSets(
+    VkDevice d, const VkDescriptorSetAllocateInfo* info, VkDescriptorSet* sets)
+{
+    return fails() ? driver.failure : vkAllocateDescriptorSets(d, info, sets);
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL my_vkResetDescriptorPool(VkDevice d, VkDescriptorPool pool,
+                                                               VkDescriptorPoolResetFlags flags)
+{
+    return fails() ? driver.failure : vkResetDescriptorPool(d, pool, flags);
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL
+my_vkSetDebugUtilsObjectNameEXT(VkDevice d, const VkDebugUtilsObjectNameInfoEXT* info)
+{
+    (void)d;
+    assert_true(info->objectHandle != 0 && info->pObjectName[0] != '\0');
+    ++driver.names;
+    return VK_ERROR_OUT_OF_HOST_MEMORY; /* of no consequence */
+}
+
+#define ROW(name)                                                                                  \
+    {                                                                                              \
+        "vk" #name, (PFN_vkVoidFunction)my_vk##name                                                \
+    }
+
+static PFN_vkVoidFunction VKAPI_CALL my_vkGetDeviceProcAddr(VkDevice d, const char* name)
+{
+    static const struct {
+        const char* name;
+        PFN_vkVoidFunction function;
+    } ours[] = {ROW(AllocateMemory),
+                ROW(CreateBuffer),
+                ROW(CreateDescriptorPool),
+                ROW(CreateDescriptorSetLayout),
+                ROW(CreateImage),
+                ROW(CreateImageView),
+                ROW(CreatePipelineLayout),
+                ROW(CreateShaderModule),
+                ROW(CreateComputePipelines),
+                ROW(FreeMemory),
+                ROW(DestroyBuffer),
+                ROW(DestroyDescriptorPool),
+                ROW(DestroyDescriptorSetLayout),
+                ROW(DestroyImage),
+                ROW(DestroyImageView),
+                ROW(DestroyPipeline),
+                ROW(DestroyPipelineLayout),
+                ROW(DestroyShaderModule),
+                ROW(BindBufferMemory),
+                ROW(BindImageMemory),
+                ROW(AllocateDescriptorSets),
+                ROW(ResetDescriptorPool)};
+    if (driver.hidden && strcmp(name, driver.hidden) == 0) {
+        return NULL;
+    }
+    for (size_t i = 0; i < sizeof ours / sizeof ours[0]; ++i) {
+        if (strcmp(name, ours[i].name) == 0) {
+            return ours[i].function;
+        }
+    }
+    return vkGetDeviceProcAddr(d, name);
+}
+
+static PFN_vkVoidFunction VKAPI_CALL my_vkGetInstanceProcAddr(VkInstance instance, const char* name)
+{
+    if (driver.hidden && strcmp(name, driver.hidden) == 0) {
+        return NULL;
+    }
+    if (strcmp(name, "vkGetDeviceProcAddr") == 0) {
+        return (PFN_vkVoidFunction)my_vkGetDeviceProcAddr;
+    }
+    if (strcmp(name, "vkSetDebugUtilsObjectNameEXT") == 0) {
+        return (PFN_vkVoidFunction)my_vkSetDebugUtilsObjectNameEXT;
+    }
+    return vkGetInstanceProcAddr(instance, name);
+}
+
+static hdrp_gpu_vk_desc failing_desc(void)
+{
+    hdrp_gpu_vk_desc desc = gpu_desc(&device);
+    desc.get_instance_proc_addr = my_vkGetInstanceProcAddr;
+    return desc;
+}
+
+static int set_up(void** state)
+{
+    (void)state;
+    memset(&driver, 0, sizeof driver);
+    driver.fail_at = -1;
+    return 0;
+}
+
+static int tear_down(void** state)
+{
+    (void)state;
+    return driver.live != 0 || device.messages != 0;
+}
+
+/* ---- what is missing ------------------------------------------------------------------------- */
+
+static void expect_missing(const hdrp_gpu_vk_desc* desc, const char* name)
+{
+    assert_string_equal(hdrp_gpu_vk_missing(desc, 0), name);
+    assert_null(hdrp_gpu_vk_missing(desc, 1));
+}
+
+static void what_is_missing_has_a_name(void** state)
+{
+    const VkPhysicalDeviceFeatures none = {0};
+    hdrp_gpu_vk_desc desc = failing_desc();
+    hdrp_gpu_vk gpu;
+    (void)state;
+    memset(&gpu, 0x5a, sizeof gpu);
+    assert_null(hdrp_gpu_vk_missing(&desc, 0));
+    desc.features = NULL;
+    expect_missing(&desc, "shaderStorageImageWriteWithoutFormat");
+    assert_int_equal(hdrp_gpu_vk_init(&gpu, &desc), HDRP_ERROR_UNSUPPORTED);
+    desc.features = &none;
+    expect_missing(&desc, "shaderStorageImageWriteWithoutFormat");
+    desc.queue_family = 63;
+    assert_string_equal(hdrp_gpu_vk_missing(&desc, 0), "VK_QUEUE_COMPUTE_BIT in the queue family");
+    assert_string_equal(hdrp_gpu_vk_missing(&desc, 1), "shaderStorageImageWriteWithoutFormat");
+    assert_null(hdrp_gpu_vk_missing(&desc, 2));
+    assert_int_equal(hdrp_gpu_vk_init(&gpu, &desc), HDRP_ERROR_UNSUPPORTED);
+    desc = failing_desc();
+    driver.hidden = "vkCmdDispatch";
+    expect_missing(&desc, "vkCmdDispatch");
+    assert_int_equal(hdrp_gpu_vk_init(&gpu, &desc), HDRP_ERROR_UNSUPPORTED);
+    driver.hidden = "vkGetPhysicalDeviceFormatProperties";
+    expect_missing(&desc, "vkGetPhysicalDeviceFormatProperties");
+    driver.hidden = NULL;
+    desc.device = VK_NULL_HANDLE;
+    desc.get_instance_proc_addr = NULL;
+    assert_string_equal(hdrp_gpu_vk_missing(&desc, 0), "device");
+    assert_string_equal(hdrp_gpu_vk_missing(&desc, 1), "get_instance_proc_addr");
+    assert_int_equal(hdrp_gpu_vk_init(&gpu, &desc), HDRP_ERROR_NULL_POINTER);
+    expect_missing(NULL, "desc");
+    for (size_t i = 0; i < sizeof gpu; ++i) {
+        assert_int_equal(((unsigned char*)&gpu)[i], 0x5a);
+    }
+}
+
+static void descs_out_of_range_are_refused(void** state)
+{
+    hdrp_gpu_vk gpu;
+    hdrp_gpu_vk_desc desc = failing_desc();
+    (void)state;
+    assert_int_equal(hdrp_gpu_vk_init(NULL, &desc), HDRP_ERROR_NULL_POINTER);
+    assert_int_equal(hdrp_gpu_vk_init(&gpu, NULL), HDRP_ERROR_NULL_POINTER);
+    desc.passes = HDRP_GPU_VK_PASS_ALL + 1u;
+    assert_int_equal(hdrp_gpu_vk_init(&gpu, &desc), HDRP_ERROR_BAD_ARGUMENT);
+    desc = failing_desc();
+    desc.frames = HDRP_GPU_VK_FRAMES_MAX + 1u;
+    assert_int_equal(hdrp_gpu_vk_init(&gpu, &desc), HDRP_ERROR_BAD_ARGUMENT);
+    desc = failing_desc();
+    desc.frame_passes = 65537;
+    assert_int_equal(hdrp_gpu_vk_init(&gpu, &desc), HDRP_ERROR_BAD_ARGUMENT);
+    assert_int_equal(driver.calls, 0);
+}
+
+static void passes_that_are_not_asked_for_are_not_made(void** state)
+{
+    hdrp_gpu_vk gpu;
+    hdrp_gpu_vk_desc desc = failing_desc();
+    hdrp_gpu_vk_image table;
+    (void)state;
+    desc.features = NULL; /* which the pass needs none of */
+    desc.passes = HDRP_GPU_VK_PASS_DEPTH;
+    desc.frames = 1;
+    assert_int_equal(hdrp_gpu_vk_init(&gpu, &desc), HDRP_OK);
+    assert_int_equal(driver.live, 4); /* a set layout, a layout, a pipeline, a pool */
+    assert_int_equal(driver.names, 1);
+    assert_true(gpu.passes[0].pipeline == VK_NULL_HANDLE);
+    assert_int_equal(hdrp_gpu_vk_image_create(&gpu, VK_FORMAT_R32G32_SFLOAT, 4, 4,
+                                              VK_IMAGE_USAGE_STORAGE_BIT, "table", &table),
+                     HDRP_OK);
+    assert_int_equal(driver.names, 2);
+    assert_int_equal(hdrp_gpu_vk_fgd_bake(&gpu, gpu_begin(&device), &table),
+                     HDRP_ERROR_UNSUPPORTED);
+    gpu_run(&device);
+    hdrp_gpu_vk_image_destroy(&gpu, &table);
+    hdrp_gpu_vk_destroy(&gpu);
+    hdrp_gpu_vk_destroy(&gpu);
+    hdrp_gpu_vk_destroy(NULL);
+}
+
+/* ---- what fails ------------------------------------------------------------------------------ */
+
+static const struct {
+    VkResult said;
+    hdrp_result meant;
+} failures[] = {{VK_ERROR_OUT_OF_HOST_MEMORY, HDRP_ERROR_OUT_OF_HOST_MEMORY},
+                {VK_ERROR_OUT_OF_DEVICE_MEMORY, HDRP_ERROR_OUT_OF_DEVICE_MEMORY},
+                {VK_ERROR_DEVICE_LOST, HDRP_ERROR_DEVICE_LOST},
+                {VK_ERROR_INITIALIZATION_FAILED, HDRP_ERROR_DRIVER}};
+
+/* Everything, once: a context, resources, a frame. The first error, or HDRP_OK. */
+static hdrp_result use_everything(const hdrp_gpu_vk_desc* desc)
+{
+    hdrp_gpu_vk gpu;
+    hdrp_gpu_vk_buffer tiles = {0};
+    hdrp_gpu_vk_image table = {0};
+    VkCommandBuffer commands;
+    hdrp_result r = hdrp_gpu_vk_init(&gpu, desc);
+    if (r != HDRP_OK) {
+        return r;
+    }
+    commands = gpu_begin(&device);
+    r = hdrp_gpu_vk_buffer_create(&gpu, 64, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                                  VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, "tiles", &tiles);
+    if (r == HDRP_OK) {
+        r = hdrp_gpu_vk_image_create(&gpu, VK_FORMAT_R32G32_SFLOAT, 2, 2,
+                                     VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+                                     "table", &table);
+    }
+    if (r == HDRP_OK) {
+        r = hdrp_gpu_vk_begin_frame(&gpu, 1);
+    }
+    if (r == HDRP_OK) {
+        r = hdrp_gpu_vk_fgd_bake(&gpu, commands, &table);
+    }
+    gpu_run(&device);
+    assert_true(r == HDRP_OK || !tiles.buffer || !table.image || gpu.passes_recorded == 0);
+    hdrp_gpu_vk_image_destroy(&gpu, &table);
+    hdrp_gpu_vk_buffer_destroy(&gpu, &tiles);
+    hdrp_gpu_vk_destroy(&gpu);
+    return r;
+}
+
+static void whatever_the_driver_fails_at_is_reported_and_leaves_nothing(void** state)
+{
+    const hdrp_gpu_vk_desc desc = failing_desc();
+    int calls;
+    (void)state;
+    assert_int_equal(use_everything(&desc), HDRP_OK);
+    calls = driver.calls;
+    assert_true(calls == 2 * 4 + 2 + 3 + 4 + 2); /* passes, pools, buffer, image, frame and set */
+    for (size_t i = 0; i < sizeof failures / sizeof failures[0]; ++i) {
+        driver.failure = failures[i].said;
+        for (int at = 0; at < calls; ++at) {
+            driver.calls = 0;
+            driver.fail_at = at;
+            assert_int_equal(use_everything(&desc), failures[i].meant);
+            assert_int_equal(driver.calls, at + 1);
+            assert_int_equal(driver.live, 0);
+        }
+    }
+}
+
+/* An allocator of the host that counts and fails. The size stands in front of each block. */
+typedef struct host_memory {
+    int live, calls, fail_at;
+} host_memory;
+
+static void* VKAPI_CALL host_allocate(void* user, size_t bytes, size_t alignment,
+                                      VkSystemAllocationScope scope)
+{
+    host_memory* host = user;
+    size_t front = alignment > 2 * sizeof(size_t) ? alignment : 2 * sizeof(size_t);
+    unsigned char* block;
+    (void)scope;
+    if (host->calls++ == host->fail_at || bytes == 0) {
+        return NULL;
+    }
+    block = aligned_alloc(front, (front + bytes + front - 1) / front * front);
+    if (!block) {
+        return NULL;
+    }
+    ++host->live;
+    memcpy(block + front - sizeof bytes, &bytes, sizeof bytes);
+    memcpy(block + front - 2 * sizeof bytes, &front, sizeof front);
+    return block + front;
+}
+
+static void VKAPI_CALL host_free(void* user, void* memory)
+{
+    host_memory* host = user;
+    size_t front;
+    if (memory) {
+        --host->live;
+        memcpy(&front, (unsigned char*)memory - 2 * sizeof front, sizeof front);
+        free((unsigned char*)memory - front);
+    }
+}
+
+static void* VKAPI_CALL host_reallocate(void* user, void* old, size_t bytes, size_t alignment,
+                                        VkSystemAllocationScope scope)
+{
+    size_t had = 0;
+    void* made = bytes ? host_allocate(user, bytes, alignment, scope) : NULL;
+    if (old && (made || bytes == 0)) {
+        memcpy(&had, (unsigned char*)old - sizeof had, sizeof had);
+        if (made) {
+            memcpy(made, old, had < bytes ? had : bytes);
+        }
+        host_free(user, old);
+    }
+    return made;
+}
+
+static void every_allocation_of_the_host_may_fail(void** state)
+{
+    host_memory host = {0, 0, -1};
+    const VkAllocationCallbacks callbacks = {.pUserData = &host,
+                                             .pfnAllocation = host_allocate,
+                                             .pfnReallocation = host_reallocate,
+                                             .pfnFree = host_free};
+    hdrp_gpu_vk_desc desc = failing_desc();
+    int calls;
+    (void)state;
+    desc.allocation = &callbacks;
+    driver.allocation = &callbacks;
+    assert_int_equal(use_everything(&desc), HDRP_OK);
+    assert_int_equal(host.live, 0);
+    calls = host.calls;
+    printf("%d allocations of the host\n", calls);
+    for (int at = 0; at < calls; ++at) {
+        hdrp_result r;
+        host.calls = 0;
+        host.fail_at = at;
+        r = use_everything(&desc);
+        /* Drivers may do without some of what they ask for. */
+        assert_true(r == HDRP_OK || r == HDRP_ERROR_OUT_OF_HOST_MEMORY ||
+                    r == HDRP_ERROR_OUT_OF_DEVICE_MEMORY);
+        assert_int_equal(host.live, 0);
+        assert_int_equal(driver.live, 0);
+    }
+}
+
+/* Memory of the caller: one piece, handed out from the middle. */
+typedef struct device_memory {
+    VkDeviceMemory memory;
+    VkMemoryPropertyFlags wanted;
+    VkDeviceSize used;
+    int live;
+    bool fails;
+} device_memory;
+
+static VkResult take_memory(void* user, const VkMemoryRequirements* required,
+                            VkMemoryPropertyFlags properties, hdrp_gpu_vk_block* block)
+{
+    device_memory* m = user;
+    m->wanted = properties;
+    if (m->fails || (required->memoryTypeBits & 1u) == 0) {
+        block->memory = m->memory; /* what is left of a failure does not matter */
+        return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    }
+    m->used = (m->used + required->alignment - 1) / required->alignment * required->alignment;
+    block->memory = m->memory;
+    block->offset = m->used;
+    block->handle = m;
+    m->used += required->size;
+    ++m->live;
+    return VK_SUCCESS;
+}
+
+static void give_memory(void* user, const hdrp_gpu_vk_block* block)
+{
+    device_memory* m = user;
+    assert_ptr_equal(block->handle, m);
+    assert_true(block->memory == m->memory);
+    --m->live;
+}
+
+static void memory_comes_from_the_caller(void** state)
+{
+    const VkMemoryAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                       .allocationSize = 1 << 20};
+    device_memory m = {.used = 4096};
+    hdrp_gpu_vk_desc desc = failing_desc();
+    hdrp_gpu_vk gpu;
+    hdrp_gpu_vk_buffer buffer;
+    hdrp_gpu_vk_image image;
+    (void)state;
+    assert_int_equal(vkAllocateMemory(device.device, &info, NULL, &m.memory), VK_SUCCESS);
+    desc.memory.allocate = take_memory;
+    desc.memory.user = &m;
+    assert_int_equal(hdrp_gpu_vk_init(&gpu, &desc), HDRP_ERROR_BAD_ARGUMENT);
+    desc.memory.release = give_memory;
+    assert_int_equal(use_everything(&desc), HDRP_OK);
+    assert_int_equal(m.live, 0);
+    assert_true(m.used > 4096);
+    assert_int_equal(hdrp_gpu_vk_init(&gpu, &desc), HDRP_OK);
+    assert_int_equal(hdrp_gpu_vk_buffer_create(&gpu, 100, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                                               VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT, NULL, &buffer),
+                     HDRP_OK);
+    assert_int_equal(m.wanted, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT);
+    assert_true(buffer.block.memory == m.memory && buffer.block.offset >= 4096);
+    hdrp_gpu_vk_buffer_destroy(&gpu, &buffer);
+    m.fails = true;
+    assert_int_equal(
+        hdrp_gpu_vk_buffer_create(&gpu, 100, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, 0, NULL, &buffer),
+        HDRP_ERROR_OUT_OF_DEVICE_MEMORY);
+    assert_int_equal(hdrp_gpu_vk_image_create(&gpu, VK_FORMAT_R32_SFLOAT, 1, 1,
+                                              VK_IMAGE_USAGE_SAMPLED_BIT, NULL, &image),
+                     HDRP_ERROR_OUT_OF_DEVICE_MEMORY);
+    assert_int_equal(m.live, 0);
+    hdrp_gpu_vk_destroy(&gpu);
+    vkFreeMemory(device.device, m.memory, NULL);
+}
+
+static void resources_out_of_range_are_refused(void** state)
+{
+    const hdrp_gpu_vk_desc desc = failing_desc();
+    hdrp_gpu_vk gpu;
+    hdrp_gpu_vk_buffer buffer = {0};
+    hdrp_gpu_vk_image image = {0};
+    const VkImageUsageFlags sampled = VK_IMAGE_USAGE_SAMPLED_BIT;
+    const VkFormat format = VK_FORMAT_R32_SFLOAT;
+    (void)state;
+    assert_int_equal(hdrp_gpu_vk_init(&gpu, &desc), HDRP_OK);
+    assert_int_equal(hdrp_gpu_vk_buffer_create(NULL, 1, 32, 0, NULL, &buffer),
+                     HDRP_ERROR_NULL_POINTER);
+    assert_int_equal(hdrp_gpu_vk_buffer_create(&gpu, 1, 32, 0, NULL, NULL),
+                     HDRP_ERROR_NULL_POINTER);
+    assert_int_equal(hdrp_gpu_vk_buffer_create(&gpu, 0, 32, 0, NULL, &buffer),
+                     HDRP_ERROR_BAD_ARGUMENT);
+    assert_int_equal(hdrp_gpu_vk_buffer_create(&gpu, 1, 0, 0, NULL, &buffer),
+                     HDRP_ERROR_BAD_ARGUMENT);
+    assert_int_equal(hdrp_gpu_vk_buffer_create(&gpu, 1, 32, 0x40000000u, NULL, &buffer),
+                     HDRP_ERROR_UNSUPPORTED);
+    assert_int_equal(hdrp_gpu_vk_image_create(&gpu, format, 0, 1, sampled, NULL, &image),
+                     HDRP_ERROR_BAD_ARGUMENT);
+    assert_int_equal(hdrp_gpu_vk_image_create(&gpu, format, 1, 16385, sampled, NULL, &image),
+                     HDRP_ERROR_BAD_ARGUMENT);
+    assert_int_equal(hdrp_gpu_vk_image_create(&gpu, format, 1, 1, 0, NULL, &image),
+                     HDRP_ERROR_BAD_ARGUMENT);
+    assert_int_equal(hdrp_gpu_vk_image_create(&gpu, format, 1, 1, sampled, NULL, NULL),
+                     HDRP_ERROR_NULL_POINTER);
+    assert_int_equal(
+        hdrp_gpu_vk_image_create(&gpu, VK_FORMAT_UNDEFINED, 1, 1, sampled, NULL, &image),
+        HDRP_ERROR_UNSUPPORTED);
+    hdrp_gpu_vk_buffer_destroy(&gpu, &buffer);
+    hdrp_gpu_vk_buffer_destroy(&gpu, NULL);
+    hdrp_gpu_vk_image_destroy(&gpu, &image);
+    hdrp_gpu_vk_image_destroy(NULL, NULL);
+    hdrp_gpu_vk_destroy(&gpu);
+}
+
+static void frames_take_back_what_they_gave(void** state)
+{
+    hdrp_gpu_vk_desc desc = failing_desc();
+    hdrp_gpu_vk gpu;
+    hdrp_gpu_vk_image table;
+    (void)state;
+    desc.frames = 3;
+    desc.frame_passes = 2;
+    assert_int_equal(hdrp_gpu_vk_init(&gpu, &desc), HDRP_OK);
+    assert_int_equal(hdrp_gpu_vk_image_create(
+                         &gpu, VK_FORMAT_R32G32_SFLOAT, 2, 2,
+                         VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT, "table", &table),
+                     HDRP_OK);
+    assert_int_equal(hdrp_gpu_vk_begin_frame(NULL, 0), HDRP_ERROR_NULL_POINTER);
+    assert_int_equal(hdrp_gpu_vk_begin_frame(&gpu, 3), HDRP_ERROR_BAD_ARGUMENT);
+    for (uint32_t frame = 0; frame < 9; ++frame) {
+        VkCommandBuffer commands = gpu_begin(&device);
+        assert_int_equal(hdrp_gpu_vk_begin_frame(&gpu, frame % 3), HDRP_OK);
+        assert_int_equal(hdrp_gpu_vk_fgd_bake(&gpu, commands, &table), HDRP_OK);
+        assert_int_equal(hdrp_gpu_vk_fgd_bake(&gpu, commands, &table), HDRP_OK);
+        assert_int_equal(hdrp_gpu_vk_fgd_bake(&gpu, commands, &table),
+                         HDRP_ERROR_OUT_OF_DEVICE_MEMORY);
+        gpu_run(&device);
+    }
+    hdrp_gpu_vk_image_destroy(&gpu, &table);
+    hdrp_gpu_vk_destroy(&gpu);
+}
+
+static void a_pipeline_cache_is_used(void** state)
+{
+    const VkPipelineCacheCreateInfo info = {.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO};
+    hdrp_gpu_vk_desc desc = failing_desc();
+    hdrp_gpu_vk gpu;
+    (void)state;
+    assert_int_equal(vkCreatePipelineCache(device.device, &info, NULL, &driver.cache), VK_SUCCESS);
+    desc.pipeline_cache = driver.cache;
+    assert_int_equal(hdrp_gpu_vk_init(&gpu, &desc), HDRP_OK);
+    vkDestroyPipelineCache(device.device, driver.cache, NULL);
+    hdrp_gpu_vk_destroy(&gpu);
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST(what_is_missing_has_a_name),
+        TEST(descs_out_of_range_are_refused),
+        TEST(passes_that_are_not_asked_for_are_not_made),
+        TEST(whatever_the_driver_fails_at_is_reported_and_leaves_nothing),
+        TEST(every_allocation_of_the_host_may_fail),
+        TEST(memory_comes_from_the_caller),
+        TEST(resources_out_of_range_are_refused),
+        TEST(frames_take_back_what_they_gave),
+        TEST(a_pipeline_cache_is_used),
+    };
+    int failed;
+    if (!gpu_open(&device)) {
+        return GPU_SKIPPED;
+    }
+    if (!device.features.shaderStorageImageWriteWithoutFormat) {
+        puts("skipped: the device lacks shaderStorageImageWriteWithoutFormat");
+        gpu_close(&device);
+        return GPU_SKIPPED;
+    }
+    failed = cmocka_run_group_tests(tests, NULL, NULL);
+    gpu_close(&device);
+    return failed || device.messages;
+}
