@@ -256,6 +256,17 @@ static size_t cell_of_pixel(const cull_truth* truth, const hdrp_cull_lists* list
     return hdrp_cull_cell(lists->grid, tile, hdrp_cull_slice(lists->grid, lists->tiles[tile].z, z));
 }
 
+/* Whether a pixel shades with the light of an entry: what lists tell of pixels, it asks. */
+static uint32_t is_visited(const hdrp_cull_lists* lists, uint32_t entry, uint32_t x, uint32_t y)
+{
+    hdrp_cull_grid g = lists->grid;
+    if (lists->masks) {
+        uint32_t word = lists->masks[hdrp_cull_mask_word(g, entry, x, y)];
+        return word >> hdrp_cull_mask_bit(g, x, y) & 1u;
+    }
+    return hdrp_cull_entry_covers(g, lists->entries[entry], x, y);
+}
+
 void cull_counts_lists(cull_counts* counts, const cull_truth* truth, const hdrp_cull_lists* lists)
 {
     hdrp_cull_stats stats;
@@ -275,7 +286,7 @@ void cull_counts_lists(cull_counts* counts, const cull_truth* truth, const hdrp_
         uint32_t x = truth->pixel_x[p], y = truth->pixel_y[p];
         hdrp_u32x4 cell = lists->cells[cell_of_pixel(truth, lists, x, y)];
         for (uint32_t i = hdrp_cull_first(cell, 0u); i < hdrp_cull_last(cell, 3u); ++i) {
-            counts->visits += hdrp_cull_entry_covers(lists->grid, lists->entries[i], x, y);
+            counts->visits += is_visited(lists, i, x, y);
         }
         counts->true_visits += truth->reached[p];
     }
