@@ -572,14 +572,22 @@ HDRP_FN hdrp_u32 hdrp_i_pack_oct_snorm_code(hdrp_v2 code, hdrp_v3 n, hdrp_u32 bi
     return hdrp_i_pack_oct_known(x | (y << bits), n, 0u);
 }
 
+/* A whole magnitude and half a step more on the side of 0 that a sign tells, counted from -1. In
+ * integers, since shader compilers regroup sums of floats, and half a step is lost next to the
+ * constant that hdrp_i_pack_u32_from_whole adds. */
+HDRP_FN hdrp_u32 hdrp_i_pack_oct_counted(float magnitude, float sign_of, hdrp_u32 middle)
+{
+    hdrp_u32 negative = 0u - (hdrp_bits_from_f32(sign_of) >> 31);
+    return middle + (hdrp_i_pack_u32_from_whole(magnitude) ^ negative); /* ~m is -1 - m */
+}
+
 /* Both coordinates counted from -1. */
 HDRP_FN hdrp_u32 hdrp_i_pack_oct_unorm_code(hdrp_v2 code, hdrp_v3 n, hdrp_u32 bits)
 {
-    float middle = hdrp_f32_from_u32(1u << (bits - 1u)) - 0.5f;
-    hdrp_u32 up = (1u << (bits - 1u)) | (1u << (2u * bits - 1u));
-    hdrp_u32 x = hdrp_i_pack_u32_from_whole(middle + hdrp_i_pack_with_sign(code.x + 0.5f, n.x));
-    hdrp_u32 y = hdrp_i_pack_u32_from_whole(middle + hdrp_i_pack_with_sign(code.y + 0.5f, n.y));
-    return hdrp_i_pack_oct_known(x | (y << bits), n, up);
+    hdrp_u32 middle = 1u << (bits - 1u);
+    hdrp_u32 x = hdrp_i_pack_oct_counted(code.x, n.x, middle);
+    hdrp_u32 y = hdrp_i_pack_oct_counted(code.y, n.y, middle);
+    return hdrp_i_pack_oct_known(x | (y << bits), n, middle | (middle << bits));
 }
 
 /* The largest magnitude of a code. */
