@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #define HDRP_CULL_IMPLEMENTATION
+#include "cull_test.h"
 #include "hdrp_cull.h"
 
 #define WIDTH  100u
@@ -797,6 +798,65 @@ static void pixels_are_asked_at_their_centres(void** state)
     }
 }
 
+/* Balls of all sizes, in front of, on and behind a rough surface with holes: each is in the list of a
+ * tile exactly if it reaches a pixel of it. A pixel within 1e-4 of a rim may count or not. */
+static void expect_balls_where_pixels_are_reached(hdrp_cull_camera c, bool flat)
+{
+    static float texels[WIDTH * HEIGHT];
+    hdrp_cull_depth depth = {texels, WIDTH, NULL};
+    hdrp_cull_shape shapes[48];
+    double ball[48][4];
+    uint64_t state = 7u;
+    scene s;
+    uint32_t listed = 0u;
+    for (size_t i = 0; i < WIDTH * HEIGHT; ++i) {
+        texels[i] = (float)(test_random(&state) < 0.1 ? 1000.0 : test_uniform(&state, 18.0, 22.0));
+    }
+    for (uint32_t i = 0; i < 48u; ++i) {
+        double size = flat ? 1.0 : 0.5;
+        ball[i][0] = test_uniform(&state, -50.0, 50.0) * size;
+        ball[i][1] = test_uniform(&state, -40.0, 40.0) * size;
+        ball[i][2] = test_uniform(&state, 14.0, 26.0);
+        ball[i][3] = test_log_uniform(&state, 0.5, 30.0) * size;
+        shapes[i] = hdrp_cull_shape_sphere(
+            v3((float)-ball[i][0], (float)ball[i][1], (float)ball[i][2]), (float)ball[i][3], 0u);
+    }
+    s = scene_seen(desc_of(1u, HDRP_CULL_PIXELS), c, shapes, 48u);
+    scene_build(&s, &depth);
+    for (uint32_t tile = 0; tile < s.lists.grid.tiles.z * s.lists.grid.tiles.w; ++tile) {
+        uint32_t x0 = tile % s.lists.grid.tiles.z * 16u, y0 = tile / s.lists.grid.tiles.z * 16u;
+        hdrp_u32x4 cell = s.lists.cells[tile];
+        for (uint32_t i = 0; i < 48u; ++i) {
+            double gap = 1e9; /* of the pixel deepest inside to the rim, negative inside */
+            bool found = false;
+            for (uint32_t e = cell.x; e < hdrp_cull_last(cell, 3u); ++e) {
+                found |= hdrp_cull_entry_index(s.lists.entries[e]) == i;
+            }
+            for (uint32_t y = y0; y < y0 + 16u && y < HEIGHT; ++y) {
+                for (uint32_t x = x0; x < x0 + 16u && x < WIDTH; ++x) {
+                    double z = (double)texels[y * WIDTH + x], k = flat ? 1.0 : 0.025 * z;
+                    double dx = ((double)x + 0.5 - 50.0) * k - ball[i][0];
+                    double dy = (40.0 - (double)y - 0.5) * k - ball[i][1], dz = z - ball[i][2];
+                    double outside = sqrt(dx * dx + dy * dy + dz * dz) - ball[i][3];
+                    gap = z < 100.0 && outside < gap ? outside : gap;
+                }
+            }
+            assert_true(gap > -1e-4 || found);
+            assert_true(gap < 1e-4 || !found);
+            listed += found ? 1u : 0u;
+        }
+    }
+    assert_true(listed > 100u);
+    scene_free(&s);
+}
+
+static void balls_are_listed_where_pixels_are_reached(void** state)
+{
+    (void)state;
+    expect_balls_where_pixels_are_reached(camera(), false);
+    expect_balls_where_pixels_are_reached(map(), true);
+}
+
 /* A wall right in front of where a shape begins in a tile, or behind its end, is not reached. */
 static void expect_reached(hdrp_cull_camera c, hdrp_cull_shape shape, uint32_t x, double nearest,
                            double farthest)
@@ -912,6 +972,7 @@ int main(void)
         cmocka_unit_test(blocks_are_those_whose_pixels_are_reached),
         cmocka_unit_test(masks_of_entries_are_the_pixels_that_are_reached),
         cmocka_unit_test(pixels_are_asked_at_their_centres),
+        cmocka_unit_test(balls_are_listed_where_pixels_are_reached),
         cmocka_unit_test(walls_beside_shapes_are_not_reached),
         cmocka_unit_test(rows_may_be_built_in_any_order),
     };
