@@ -1574,8 +1574,8 @@ static uint32_t hdrp_i_cull_limit(hdrp_i_cull_job* job)
 /* The slices of each hit. */
 static void hdrp_i_cull_slices(hdrp_i_cull_job* job, float scale)
 {
-    const float* nearest = job->s.hit_nearest;
-    const float* farthest = job->s.hit_farthest;
+    float* nearest = job->s.hit_nearest;
+    float* farthest = job->s.hit_farthest;
     uint8_t* first = job->s.hit_first;
     uint8_t* last = job->s.hit_last;
     hdrp_cull_grid grid = job->lists->grid;
@@ -1586,6 +1586,9 @@ static void hdrp_i_cull_slices(hdrp_i_cull_job* job, float scale)
         return;
     }
     count = HDRP_I_CULL_WHOLE(job->hit_count);
+    for (h = job->hit_count; h < count; ++h) {
+        nearest[h] = farthest[h] = 0.0f;
+    }
     HDRP_I_CULL_INDEPENDENT
     for (h = 0u; h < count; ++h) {
         first[h] = (uint8_t)hdrp_cull_slice(grid, scale, nearest[h]);

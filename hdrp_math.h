@@ -1897,9 +1897,12 @@ HDRP_FN hdrp_depth_params hdrp_depth_params_orthographic(float near_m, float far
  *  source        inverse of the projection */
 HDRP_FN float hdrp_view_depth(hdrp_depth_params params, float device_depth)
 {
-    float e = hdrp_saturate(device_depth) * params.nearness.x + params.nearness.y;
-    float z = (params.ratio.x * e + params.ratio.y) /
-              hdrp_max(params.ratio.z * e + params.ratio.w, HDRP_FLT_MIN);
+    /* Products by themselves, because clang fuses what is in one expression: see hdrp_cull.h. */
+    float share = hdrp_saturate(device_depth) * params.nearness.x;
+    float e = share + params.nearness.y;
+    float above = params.ratio.x * e;
+    float below = params.ratio.z * e;
+    float z = (above + params.ratio.y) / hdrp_max(below + params.ratio.w, HDRP_FLT_MIN);
     return hdrp_clamp(z, 0.0f, HDRP_DEPTH_INFINITE);
 }
 

@@ -44,9 +44,24 @@ static void* block(size_t bytes)
     return aligned_alloc(HDRP_MEMORY_ALIGNMENT, bytes);
 }
 
-static int run(FILE* file, const cull_hash_scene* s, uint32_t index)
+/* The depths of a scene, read as those of a device: of a projection in round numbers, for making one
+ * may round differently. Any will do, as long as it is the same one. */
+static float* device_texels(const cull_hash_scene* s)
 {
-    hdrp_cull_depth depth = {s->texels, s->desc.width_px, NULL};
+    size_t count = (size_t)s->desc.width_px * s->desc.height_px;
+    float* texels = malloc(count * sizeof *texels);
+    for (size_t i = 0; texels && i < count; ++i) {
+        texels[i] = s->texels[i] / 256.0f;
+    }
+    return texels;
+}
+
+static int run(FILE* file, const cull_hash_scene* s, uint32_t index, int device_depth)
+{
+    const hdrp_depth_params device = {{-0.3f, 1.3f, 0.37f, 0.013f}, {0.7f, 0.1f, 0.0f, 0.0f}};
+    float* texels = device_depth ? device_texels(s) : NULL;
+    hdrp_cull_depth depth = {texels ? texels : s->texels, s->desc.width_px,
+                             texels ? &device : NULL};
     hdrp_cull_set set;
     hdrp_cull_lists lists;
     hdrp_cull_stats stats;
@@ -70,6 +85,7 @@ static int run(FILE* file, const cull_hash_scene* s, uint32_t index)
         fprintf(file, "%2u %016" PRIx64 " %" PRIu64 " entries, %" PRIu64 " dropped\n", index,
                 hash_lists(&lists), stats.entries, stats.dropped);
     }
+    free(texels);
     free(a);
     free(b);
     free(scratch);
@@ -83,7 +99,7 @@ int main(int argc, char** argv)
     int ok = file != NULL;
     for (uint32_t i = 0; ok && i < CULL_HASH_SCENES; ++i) {
         cull_hash_scene_make(&scene, i);
-        ok = run(file, &scene, i);
+        ok = run(file, &scene, i, 0) && (!scene.texels || run(file, &scene, i, 1));
         free(scene.texels);
     }
     if (!ok || (file != stdout && fclose(file) != 0)) {
