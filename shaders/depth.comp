@@ -3,6 +3,7 @@
 // hdrp_cull_measure_depth writes, to the bit where the device divides as IEEE 754 says. A group
 // makes a tile.
 // contraction: none
+// header: hdrp_gpu_vk_cull.h
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "hdrp_cull_grid.h"

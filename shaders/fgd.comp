@@ -3,6 +3,7 @@
 // quadrature. A group makes a texel; each of its threads sums the half vectors of one azimuth.
 // Visible normals map the integral to a square on which masking is a bounded factor, so that
 // narrow lobes and grazing views need no more nodes than others.
+// header: hdrp_gpu_vk_env.h
 #extension GL_GOOGLE_include_directive : require
 #include "hdrp_brdf.h"
 

@@ -52,9 +52,9 @@ def main():
     version = ".".join(VERSION.findall(texts["hdrp_math.h"]))
     everything = []
     for name in texts:
-        if not GRAPHICS.search(texts[name]):
-            in_order(name, texts, everything)
         files = in_order(name, texts, [])
+        if not any(GRAPHICS.search(texts[file]) for file in files):
+            in_order(name, texts, everything)
         (folder / name).write_text(amalgamation(name, files, texts, version))
     (folder / "hdrp.h").write_text(amalgamation("hdrp.h", everything, texts, version))
     print(f"{len(texts) + 1} headers in {folder}")

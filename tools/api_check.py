@@ -42,7 +42,12 @@ DEPENDENCIES = {
     "cull_blocker": "math light cull_volume",
     "cull": "math light cull_volume cull_blocker cull_grid cull_variant",
     "vol": "math light cull",
-    "gpu_vk": "math light brdf oit sss env pack area cull cull_grid vol",
+    "gpu_vk_core": "math",
+    "gpu_vk_cull": "math light cull gpu_vk_core",
+    "gpu_vk_env": "math brdf env gpu_vk_core",
+    "gpu_vk_light": "math light brdf pack env cull cull_grid gpu_vk_core gpu_vk_cull",
+    "gpu_vk_shadow": "math light gpu_vk_core",
+    "gpu_vk": "gpu_vk_core gpu_vk_cull gpu_vk_env gpu_vk_light gpu_vk_shadow",
 }
 SYSTEM_HEADERS = {"<math.h>", "<stdint.h>", "<stddef.h>", "<string.h>", "<float.h>", "<limits.h>",
                   "<vulkan/vulkan.h>", "<vulkan/vulkan_core.h>"}
@@ -365,8 +370,17 @@ def check_void_parameters(tree):
             tree.report(header.name, function.line, f"{function.name}() must say (void)")
 
 
+# Headers that are one module in parts: their private names belong to all of them.
+FAMILY = re.compile(r"hdrp_gpu_vk\w*\.h$")
+
+
+def family(name):
+    """What shares the private names of a header."""
+    return FAMILY.pattern if FAMILY.match(name) else name
+
+
 def check_private_use(tree):
-    """A private name belongs to one header."""
+    """A private name belongs to one header, or to one family of them."""
     owner = {}
     for header in tree.headers:
         for function in header.functions():
@@ -381,7 +395,7 @@ def check_private_use(tree):
     for header in tree.headers:
         for number, line in enumerate(header.code.split("\n"), 1):
             for name in sorted(set(re.findall(r"\b(?:hdrp_i|HDRP_I)_\w+", line))):
-                if owner.get(name, header.name) != header.name:
+                if family(owner.get(name, header.name)) != family(header.name):
                     tree.report(header.name, number, f"{name} is private to {owner[name]}")
 
 

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Compiles shaders/*.comp and writes their SPIR-V into hdrp_gpu_vk.h: embed_spirv.py [--check]
+"""Compiles shaders/*.comp and writes their SPIR-V into headers: embed_spirv.py [--check]
 
-Each shader becomes an array of words, hdrp_i_gpu_vk_spirv_<name>, between the markers in the header:
+Each shader becomes an array of words, hdrp_i_gpu_vk_spirv_<name>, between the markers in the header
+that it names in a line "// header: hdrp_gpu_vk_<topic>.h":
 compiled by glslangValidator, optimised and stripped by spirv-opt, checked by spirv-val. A shader
 that says "// contraction: none" has its sums and products decorated with NoContraction first, so
 that neither spirv-opt nor a driver rounds them in another way than C does.
 
-With --check nothing is written: exit status 1 when the words in the header are stale. Other versions
+With --check nothing is written: exit status 1 when the words in a header are stale. Other versions
 of the compilers make other words, so that without the pinned ones the check is skipped (exit status
 77), and writing is refused.
 """
@@ -19,13 +20,13 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-HEADER = ROOT / "hdrp_gpu_vk.h"
 TARGET = "vulkan1.1"
 BEGIN, END = "/* >>spirv", "/* >>end of spirv */"
 WORDS_IN_LINE = 8
 SKIPPED = 77
 PINNED = {"glslangValidator": "Glslang Version: 11:12.0.0",
           "spirv-opt": "SPIRV-Tools v2023.1", "spirv-val": "SPIRV-Tools v2023.1"}
+HEADER = re.compile(r"^// header: (\w+\.h)$", re.M)
 NO_CONTRACTION = re.compile(r"^// contraction: none$", re.M)
 
 MAGIC, HEADER_WORDS = 0x07230203, 5
@@ -136,29 +137,47 @@ def embedded(text, block):
     return text[:begin] + block + text[end + len(END):]
 
 
+def by_header(sources):
+    """The shaders of each header that one of them names."""
+    headers = {}
+    for source in sources:
+        named = HEADER.search(source.read_text(encoding="utf-8"))
+        if not named:
+            raise ToolError(f"{source.name} has no line '// header: hdrp_gpu_vk_<topic>.h'")
+        headers.setdefault(ROOT / named.group(1), []).append(source)
+    return headers
+
+
+def renew(header, sources, folder, check):
+    """Writes the words of a header; whether they were what they should be."""
+    modules = {source.stem: compiled(source, ROOT, folder) for source in sources}
+    text = header.read_text(encoding="utf-8")
+    renewed = embedded(text, generated(modules))
+    if not check:
+        header.write_text(renewed, encoding="utf-8")
+    sizes = ", ".join(f"{name} {4 * len(words)} bytes" for name, words in sorted(modules.items()))
+    print(f"{header.name}: {sizes}")
+    return renewed == text
+
+
 def main():
     check = "--check" in sys.argv[1:]
     problems = missing_programs()
     if problems:
         print("skipped:" if check else "embed_spirv.py:", "; ".join(problems))
         return SKIPPED if check else 1
-    sources = sorted((ROOT / "shaders").glob("*.comp"))
+    stale = []
     try:
         with tempfile.TemporaryDirectory() as folder:
-            modules = {source.stem: compiled(source, ROOT, pathlib.Path(folder))
-                       for source in sources}
-        text = HEADER.read_text(encoding="utf-8")
-        renewed = embedded(text, generated(modules))
-    except ToolError as error:
+            for header, sources in sorted(by_header(sorted((ROOT / "shaders").glob("*.comp"))).items()):
+                if not renew(header, sources, pathlib.Path(folder), check):
+                    stale.append(header.name)
+    except (ToolError, OSError) as error:
         print(f"embed_spirv.py: {error}")
         return 1
-    sizes = ", ".join(f"{name} {4 * len(words)} bytes" for name, words in sorted(modules.items()))
-    if check and renewed != text:
-        print(f"{HEADER.name} is stale: run tools/embed_spirv.py")
+    if check and stale:
+        print(f"{', '.join(stale)} stale: run tools/embed_spirv.py")
         return 1
-    if not check:
-        HEADER.write_text(renewed, encoding="utf-8")
-    print(sizes)
     return 0
 
 

@@ -271,7 +271,7 @@ static void passes_that_are_not_asked_for_are_not_made(void** state)
     assert_int_equal(hdrp_gpu_vk_init(&gpu, &desc), HDRP_OK);
     assert_int_equal(driver.live, 4); /* a set layout, a layout, a pipeline, a pool */
     assert_int_equal(driver.names, 1);
-    assert_true(gpu.passes[0].pipeline == VK_NULL_HANDLE);
+    assert_true(gpu.pipelines[0].pipeline == VK_NULL_HANDLE);
     assert_int_equal(hdrp_gpu_vk_image_create(&gpu, VK_FORMAT_R32G32_SFLOAT, 4, 4,
                                               VK_IMAGE_USAGE_STORAGE_BIT, "table", &table),
                      HDRP_OK);

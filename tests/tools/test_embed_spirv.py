@@ -91,7 +91,7 @@ class Header(unittest.TestCase):
                 (root / name).mkdir()
             tool = root / "tools" / "embed_spirv.py"
             tool.write_text((ROOT / "tools" / "embed_spirv.py").read_text())
-            (root / "shaders" / "x.comp").write_text(SHADER.format(comment=""))
+            (root / "shaders" / "x.comp").write_text(SHADER.format(comment="// header: hdrp_gpu_vk.h"))
             header = root / "hdrp_gpu_vk.h"
             header.write_text("/* >>spirv */\n/* >>end of spirv */\n")
 
