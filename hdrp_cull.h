@@ -37,8 +37,8 @@
  *
  * >>index of the functions, without hdrp_cull_ (written by tools/api_check.py --write)
  *   sets of shapes: set_memory_size set_init set_begin set_project
- *   grids of lists: memory_size init begin measure_depth rows scratch_size build count masks
- *       light_features apply_blockers
+ *   grids of lists: desc_complete memory_size init begin measure_depth rows scratch_size build
+ *       count masks light_features apply_blockers
  * >>end */
 #ifndef HDRP_CULL_H
 #define HDRP_CULL_H
@@ -162,6 +162,14 @@ typedef struct hdrp_cull_depth {
     size_t row_stride;               /* texels from row to row */
     const hdrp_depth_params* device; /* how to read device depth; NULL: texels are metres */
 } hdrp_cull_depth;
+
+/** A description of lists with its defaults in place, as hdrp_cull_init keeps it.
+ *  desc      sizes
+ *  complete  result; may be desc
+ *  returns   HDRP_OK, or an error, with complete untouched
+ *  errors    HDRP_ERROR_NULL_POINTER, HDRP_ERROR_BAD_ARGUMENT for sizes out of their ranges,
+ *            HDRP_ERROR_TOO_LARGE where cells, entries or masks are more than 32 bits can count */
+HDRP_API hdrp_result hdrp_cull_desc_complete(const hdrp_cull_desc* desc, hdrp_cull_desc* complete);
 
 /** Bytes that hdrp_cull_init needs.
  *  desc     sizes
@@ -533,6 +541,23 @@ static uint32_t hdrp_i_cull_tiles(const hdrp_cull_desc* d, uint32_t* columns, ui
                    tiles * d->entry_capacity * (1u + hdrp_i_cull_words(d)) > 0xffffffffu
                ? 0u
                : (uint32_t)tiles;
+}
+
+HDRP_API hdrp_result hdrp_cull_desc_complete(const hdrp_cull_desc* desc, hdrp_cull_desc* complete)
+{
+    hdrp_cull_desc d = hdrp_i_cull_defaults(desc);
+    uint32_t columns, rows;
+    if (!desc || !complete) {
+        return HDRP_ERROR_NULL_POINTER;
+    }
+    if (d.width_px == 0u) {
+        return HDRP_ERROR_BAD_ARGUMENT;
+    }
+    if (hdrp_i_cull_tiles(&d, &columns, &rows) == 0u) {
+        return HDRP_ERROR_TOO_LARGE;
+    }
+    *complete = d;
+    return HDRP_OK;
 }
 
 static size_t hdrp_i_cull_place_lists(hdrp_cull_lists* lists, uint32_t tiles, void* memory)
