@@ -414,8 +414,10 @@ HDRP_I_GPU_VK_FN void hdrp_i_gpu_vk_fill_lighting(const hdrp_gpu_vk_lighting* l,
         p->device = *l->device;
     }
     p->picture = hdrp_u32x4_make(l->width_px, l->height_px, hdrp_i_gpu_vk_there_is(l), 0u);
-    p->lights = hdrp_u32x4_make(l->first_directional, l->directional_count, l->masked_directional,
-                                hdrp_i_gpu_vk_frame_word(l));
+    p->lights = hdrp_u32x4_make(
+        l->first_directional, l->directional_count,
+        l->shadow_mask != VK_NULL_HANDLE ? l->masked_directional : HDRP_LIGHT_INDEX_NONE,
+        hdrp_i_gpu_vk_frame_word(l));
     p->kinds = hdrp_u32x4_make(l->kind_mask, l->kind_lit & l->kind_mask, 0u, 0u);
     p->scales = hdrp_v4_make(l->exposure > 0.0f ? l->exposure : 1.0f, (float)l->specular_levels,
                              (float)l->fgd_size, 0.0f);
