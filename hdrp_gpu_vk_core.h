@@ -29,8 +29,8 @@ extern "C" {
 /* Passes, or-ed. What is not asked for is not created, and needs nothing of the device. */
 #define HDRP_GPU_VK_PASS_FGD   1u
 #define HDRP_GPU_VK_PASS_DEPTH 2u
-#define HDRP_GPU_VK_PASS_LIGHT 256u
-#define HDRP_GPU_VK_PASS_ALL   259u
+#define HDRP_GPU_VK_PASS_LIGHT 32u
+#define HDRP_GPU_VK_PASS_ALL   35u
 
 /* Room for the compute shaders of all passes. */
 #define HDRP_GPU_VK_SHADERS_MAX 32u
