@@ -27,9 +27,10 @@ extern "C" {
 #endif
 
 /* Passes, or-ed. What is not asked for is not created, and needs nothing of the device. */
-#define HDRP_GPU_VK_PASS_FGD   1u
-#define HDRP_GPU_VK_PASS_DEPTH 2u
-#define HDRP_GPU_VK_PASS_ALL   3u
+#define HDRP_GPU_VK_PASS_FGD    1u
+#define HDRP_GPU_VK_PASS_DEPTH  2u
+#define HDRP_GPU_VK_PASS_SHADOW 64u
+#define HDRP_GPU_VK_PASS_ALL    67u
 
 /* Room for the compute shaders of all passes. */
 #define HDRP_GPU_VK_SHADERS_MAX 32u
@@ -232,8 +233,9 @@ extern "C" {
 #define HDRP_I_GPU_VK_BINDINGS_MAX 20u
 
 /* Places in hdrp_gpu_vk.pipelines. */
-#define HDRP_I_GPU_VK_FGD   0u
-#define HDRP_I_GPU_VK_DEPTH 1u
+#define HDRP_I_GPU_VK_FGD    0u
+#define HDRP_I_GPU_VK_DEPTH  1u
+#define HDRP_I_GPU_VK_SHADOW 28u
 
 /* A compute shader. Each letter of `bindings` is the type of one, in order from 0 on: s storage
  * image, t sampled image, c sampled image with a sampler, b storage buffer, u uniform buffer. */

@@ -42,11 +42,12 @@ DEPENDENCIES = {
     "cull_blocker": "math light cull_volume",
     "cull": "math light cull_volume cull_blocker cull_grid cull_variant",
     "vol": "math light cull",
+    "shadow": "math light",
     "gpu_vk_core": "math",
     "gpu_vk_cull": "math light cull gpu_vk_core",
     "gpu_vk_env": "math brdf env gpu_vk_core",
     "gpu_vk_light": "math light brdf pack env cull cull_grid gpu_vk_core gpu_vk_cull",
-    "gpu_vk_shadow": "math light gpu_vk_core",
+    "gpu_vk_shadow": "math light shadow pack cull_volume gpu_vk_core",
     "gpu_vk": "gpu_vk_core gpu_vk_cull gpu_vk_env gpu_vk_light gpu_vk_shadow",
 }
 SYSTEM_HEADERS = {"<math.h>", "<stdint.h>", "<stddef.h>", "<string.h>", "<float.h>", "<limits.h>",
