@@ -44,6 +44,7 @@
 #include "hdrp_gpu_vk_cull.h"
 #include "hdrp_gpu_vk_env.h"
 #include "hdrp_gpu_vk_light.h"
+#include "hdrp_gpu_vk_shadow.h"
 
 #if HDRP_VERSION != 100
 #error "hdrp_gpu_vk.h 0.1.0 needs the hdrp_math.h of the same version"
@@ -103,6 +104,7 @@ HDRP_API hdrp_result hdrp_gpu_vk_begin_frame(hdrp_gpu_vk* gpu, uint32_t frame);
 #include "hdrp_gpu_vk_cull.h"
 #include "hdrp_gpu_vk_env.h"
 #include "hdrp_gpu_vk_light.h"
+#include "hdrp_gpu_vk_shadow.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -177,7 +179,7 @@ static void hdrp_i_gpu_vk_check(hdrp_gpu_vk_functions* vk, const hdrp_gpu_vk_des
     hdrp_i_gpu_vk_need(missing, properties.apiVersion >= VK_API_VERSION_1_1, "Vulkan 1.1");
     hdrp_i_gpu_vk_need(missing, (hdrp_i_gpu_vk_queue_flags(vk, desc) & VK_QUEUE_COMPUTE_BIT) != 0u,
                        "VK_QUEUE_COMPUTE_BIT in the queue family");
-    if (passes & (HDRP_GPU_VK_PASS_FGD | HDRP_GPU_VK_PASS_LIGHT)) {
+    if (passes & (HDRP_GPU_VK_PASS_FGD | HDRP_GPU_VK_PASS_LIGHT | HDRP_GPU_VK_PASS_SHADOW)) {
         hdrp_i_gpu_vk_need(missing,
                            desc->features && desc->features->shaderStorageImageWriteWithoutFormat,
                            "shaderStorageImageWriteWithoutFormat");
@@ -261,6 +263,7 @@ static VkResult hdrp_i_gpu_vk_make(hdrp_gpu_vk* gpu)
     r = r == VK_SUCCESS ? hdrp_i_gpu_vk_make_shaders(gpu, hdrp_i_gpu_vk_cull_shader) : r;
     r = r == VK_SUCCESS ? hdrp_i_gpu_vk_make_shaders(gpu, hdrp_i_gpu_vk_env_shader) : r;
     r = r == VK_SUCCESS ? hdrp_i_gpu_vk_make_shaders(gpu, hdrp_i_gpu_vk_light_shader) : r;
+    r = r == VK_SUCCESS ? hdrp_i_gpu_vk_make_shaders(gpu, hdrp_i_gpu_vk_shadow_shader) : r;
     for (i = 0u; i < gpu->desc.frames && r == VK_SUCCESS; ++i) {
         r = hdrp_i_gpu_vk_pool(gpu, &gpu->pools[i]);
     }

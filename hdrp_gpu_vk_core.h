@@ -27,10 +27,11 @@ extern "C" {
 #endif
 
 /* Passes, or-ed. What is not asked for is not created, and needs nothing of the device. */
-#define HDRP_GPU_VK_PASS_FGD   1u
-#define HDRP_GPU_VK_PASS_DEPTH 2u
-#define HDRP_GPU_VK_PASS_LIGHT 32u
-#define HDRP_GPU_VK_PASS_ALL   35u
+#define HDRP_GPU_VK_PASS_FGD    1u
+#define HDRP_GPU_VK_PASS_DEPTH  2u
+#define HDRP_GPU_VK_PASS_LIGHT  32u
+#define HDRP_GPU_VK_PASS_SHADOW 64u
+#define HDRP_GPU_VK_PASS_ALL    99u
 
 /* Room for the compute shaders of all passes. */
 #define HDRP_GPU_VK_SHADERS_MAX 32u
@@ -238,6 +239,7 @@ extern "C" {
 #define HDRP_I_GPU_VK_CLASSIFY 16u
 #define HDRP_I_GPU_VK_DISPATCH 17u
 #define HDRP_I_GPU_VK_DEFERRED 18u
+#define HDRP_I_GPU_VK_SHADOW   28u
 
 /* A compute shader. Each letter of `bindings` is the type of one, in order from 0 on: s storage
  * image, t sampled image, c sampled image with a sampler, b storage buffer, u uniform buffer. */
