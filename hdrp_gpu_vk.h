@@ -175,7 +175,8 @@ static void hdrp_i_gpu_vk_check(hdrp_gpu_vk_functions* vk, const hdrp_gpu_vk_des
     hdrp_i_gpu_vk_need(missing, properties.apiVersion >= VK_API_VERSION_1_1, "Vulkan 1.1");
     hdrp_i_gpu_vk_need(missing, (hdrp_i_gpu_vk_queue_flags(vk, desc) & VK_QUEUE_COMPUTE_BIT) != 0u,
                        "VK_QUEUE_COMPUTE_BIT in the queue family");
-    if (passes & HDRP_GPU_VK_PASS_FGD) {
+    if (passes &
+        (HDRP_GPU_VK_PASS_FGD | HDRP_GPU_VK_PASS_ENVIRONMENT | HDRP_GPU_VK_PASS_TONE_MAP)) {
         hdrp_i_gpu_vk_need(missing,
                            desc->features && desc->features->shaderStorageImageWriteWithoutFormat,
                            "shaderStorageImageWriteWithoutFormat");
