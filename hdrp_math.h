@@ -1169,7 +1169,7 @@ HDRP_FN float hdrp_luminance(hdrp_v3 color)
  *  color    [0,1e18]  exposed linear Rec.709
  *  returns  [0,1]     display-referred linear Rec.709
  *  edges    NaN and what is below 0 give 0, infinity is as 1e18, which is white
- *  error    <= 6e-7 absolute  @accuracy tonemap_neutral
+ *  error    <= 2e-7 absolute  @accuracy tonemap_neutral
  *  source   Khronos Group 2024, "Khronos PBR Neutral Tone Mapper" */
 HDRP_FN hdrp_v3 hdrp_tonemap_neutral(hdrp_v3 color)
 {
