@@ -378,13 +378,6 @@ typedef struct hdrp_i_gpu_vk_list_sets {
     VkDescriptorSet project_set, depth_set, coarse_set, build_set;
 } hdrp_i_gpu_vk_list_sets;
 
-HDRP_I_GPU_VK_FN void hdrp_i_gpu_vk_bound_buffer(hdrp_i_gpu_vk_bound* bound,
-                                                 const hdrp_gpu_vk_buffer* buffer)
-{
-    bound->buffer.buffer = buffer->buffer;
-    bound->buffer.range = VK_WHOLE_SIZE;
-}
-
 HDRP_I_GPU_VK_FN hdrp_gpu_vk_depth hdrp_i_gpu_vk_depth_of_lists(const hdrp_gpu_vk_lists* l,
                                                                 const hdrp_gpu_vk_cull_frame* frame)
 {
