@@ -1421,6 +1421,14 @@ HDRP_FN hdrp_light_incident hdrp_light_eval(hdrp_light light, hdrp_v3 position)
     return r;
 }
 
+/* hdrp_light_sine of lights that are not directional. */
+HDRP_FN float hdrp_i_light_sine_near(hdrp_light light, hdrp_light_incident incident)
+{
+    float size = light.forward_radius.w;
+    float sine = hdrp_min(size / hdrp_max(incident.distance_m, 1e-6f), 0.99f);
+    return hdrp_light_type(light) == HDRP_LIGHT_TYPE_BOX || !(size > 0.0f) ? 0.0f : sine;
+}
+
 /** Sine of half the angle at which the source of a light is seen.
  *  light     valid
  *  incident  valid  of the light, at the place that sees it
@@ -1431,12 +1439,10 @@ HDRP_FN hdrp_light_incident hdrp_light_eval(hdrp_light light, hdrp_v3 position)
  *  source    a ball of the radius of the record; a disc of its angle in the sky */
 HDRP_FN float hdrp_light_sine(hdrp_light light, hdrp_light_incident incident)
 {
-    hdrp_u32 type = hdrp_light_type(light);
-    float size = light.forward_radius.w;
-    float sky = hdrp_i_light_sin(hdrp_clamp(0.5f * size, 0.0f, HDRP_HALF_PI));
-    float near_by = hdrp_min(size / hdrp_max(incident.distance_m, 1e-6f), 0.99f);
-    float seen = type == HDRP_LIGHT_TYPE_BOX || !(size > 0.0f) ? 0.0f : near_by;
-    return type == HDRP_LIGHT_TYPE_DIRECTIONAL ? sky : seen;
+    float half_angle = hdrp_clamp(0.5f * light.forward_radius.w, 0.0f, HDRP_HALF_PI);
+    float sine = hdrp_i_light_sine_near(light, incident);
+    return hdrp_light_type(light) == HDRP_LIGHT_TYPE_DIRECTIONAL ? hdrp_i_light_sin(half_angle)
+                                                                 : sine;
 }
 
 /** Variance of normals that widens a highlight as the size of a source does.

@@ -45,7 +45,7 @@ VARIANTS = {
     "punctual+anisotropy": SIMPLE | STRETCH,
     "punctual+iridescence": SIMPLE | FILM,
     "punctual+coat": SIMPLE | COAT,
-    "everything": 0x7ff5003e,
+    "everything": 0xfff5003e,
 }
 
 
