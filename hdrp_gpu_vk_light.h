@@ -19,6 +19,11 @@
  * the same loop: shaders/light_loop.glsl, which reads what hdrp_gpu_vk_write_lighting wrote.
  *
  * >>index of the functions, without hdrp_gpu_vk_ (written by tools/api_check.py --write)
+ *   words of features: word_of_material word_of_light word_of_tile
+ *   lighting: write_lighting
+ *   variants: variants_create variants_destroy
+ *   classification: tiles_create tiles_destroy classify
+ *   deferred lighting: light_deferred
  * >>end */
 #ifndef HDRP_GPU_VK_LIGHT_H
 #define HDRP_GPU_VK_LIGHT_H
@@ -48,9 +53,9 @@
 #define HDRP_GPU_VK_WORD_LIT            (1u << 25) /* anything that is lit from the GBuffer */
 #define HDRP_GPU_VK_WORD_SLICES         (1u << 26) /* of a frame: tiles have more than one list */
 #define HDRP_GPU_VK_WORD_DIRECTIONAL    (1u << 27) /* of a frame: lights that are in no list */
-#define HDRP_GPU_VK_WORD_SHADOW_MASK    (1u << 28) /* of a frame: an image of what one of them sees */
+#define HDRP_GPU_VK_WORD_SHADOW_MASK    (1u << 28) /* of a frame: what some of them see */
 #define HDRP_GPU_VK_WORD_ENVIRONMENT    (1u << 29) /* of a frame */
-#define HDRP_GPU_VK_WORD_SPLIT          (1u << 30) /* diffuse light of subsurface scattering apart */
+#define HDRP_GPU_VK_WORD_SPLIT          (1u << 30) /* light below surfaces apart */
 #define HDRP_GPU_VK_WORD_MASKS          (1u << 31) /* of a frame: lists say it of each pixel */
 #define HDRP_GPU_VK_WORD_ALL            0xfff5003eu
 
@@ -67,13 +72,13 @@
 struct hdrp_gpu_vk_lighting_params {
     hdrp_cull_camera camera;
     hdrp_cull_grid grid;
-    hdrp_depth_params device; /* zeros where depths are metres */
-    hdrp_u32x4 picture;       /* any  x width, y height, z HDRP_GPU_VK_LIGHTING_..., w number of
+    hdrp_depth_params depth; /* of the device; zeros where depths are metres */
+    hdrp_u32x4 picture;      /* any  x width, y height, z HDRP_GPU_VK_LIGHTING_..., w number of
                                  lights in the shadow mask */
-    hdrp_u32x4 lights;        /* any  x first and y number of those in no list, z first in the
+    hdrp_u32x4 lights;       /* any  x first and y number of those in no list, z first in the
                                  shadow mask, w features of the frame: HDRP_GPU_VK_WORD_... */
-    hdrp_u32x4 kinds;         /* any  x mask and y value of those that are lit, zw 0 */
-    hdrp_v4 scales;           /* any  x exposure, y levels of the specular cube, z size of the table
+    hdrp_u32x4 kinds;        /* any  x mask and y value of those that are lit, zw 0 */
+    hdrp_v4 scales;          /* any  x exposure, y levels of the specular cube, z size of the table
                                  of FGD, w 0 */
     hdrp_env_sh sh;
 };
@@ -94,7 +99,7 @@ HDRP_FN hdrp_u32 hdrp_gpu_vk_word_of_material(hdrp_u32 features, hdrp_u32 split)
 
 /** The features that a light of a list needs of a variant.
  *  type_and_features  any  bits.x of the record
- *  returns            any  HDRP_GPU_VK_WORD_...: those bits of hdrp_cull_shape_from_light that count
+ *  returns            any  HDRP_GPU_VK_WORD_...: what counts of hdrp_cull_shape_from_light
  *  edges              0 for lights that evaluation finds dark
  *  error              none: a selection of bits
  *  source             a definition */
@@ -227,8 +232,8 @@ typedef struct hdrp_gpu_vk_variants {
  *  count     [1,HDRP_CULL_VARIANT_MAX]
  *  variants  result; to be destroyed by hdrp_gpu_vk_variants_destroy
  *  returns   HDRP_OK, or an error, with variants untouched and nothing left on the device
- *  errors    HDRP_ERROR_NULL_POINTER, HDRP_ERROR_BAD_ARGUMENT, HDRP_ERROR_UNSUPPORTED where the pass
- *            was not asked for, and those of hdrp_gpu_vk_image_create
+ *  errors    HDRP_ERROR_NULL_POINTER, HDRP_ERROR_BAD_ARGUMENT, HDRP_ERROR_UNSUPPORTED where the
+ *            pass was not asked for, and those of hdrp_gpu_vk_image_create
  *  memory    an image of one texel, from desc.memory
  *  note      one module, specialised: a driver compiles each on its own, which takes time. A word
  *            of HDRP_GPU_VK_WORD_ALL covers everything, and should be the last */
@@ -270,9 +275,9 @@ HDRP_API hdrp_result hdrp_gpu_vk_tiles_create(const hdrp_gpu_vk* gpu, hdrp_cull_
  *  edges  what uses them must have been executed */
 HDRP_API void hdrp_gpu_vk_tiles_destroy(const hdrp_gpu_vk* gpu, hdrp_gpu_vk_tiles* tiles);
 
-/** Records which variant lights which tile: hdrp_cull_material_tiles of the features of the GBuffer,
- *  hdrp_cull_light_features of the lists, hdrp_cull_combine_features, hdrp_cull_assign_variants by
- *  the first that covers, and hdrp_cull_build_dispatch.
+/** Records which variant lights which tile: hdrp_cull_material_tiles of the features of the
+ *  GBuffer, hdrp_cull_light_features of the punctual lights of lists, hdrp_cull_combine_features,
+ *  hdrp_cull_assign_variants by the first that covers, and hdrp_cull_build_dispatch.
  *  gpu       from hdrp_gpu_vk_init, with HDRP_GPU_VK_PASS_LIGHT
  *  commands  that are recorded, outside of a render pass
  *  lighting  after hdrp_gpu_vk_write_lighting; depth, RT2, kinds, lists and lights are read
@@ -281,7 +286,8 @@ HDRP_API void hdrp_gpu_vk_tiles_destroy(const hdrp_gpu_vk* gpu, hdrp_gpu_vk_tile
  *  returns   HDRP_OK, or an error, with nothing recorded
  *  errors    HDRP_ERROR_NULL_POINTER for a missing view or buffer, HDRP_ERROR_BAD_ARGUMENT for
  *            members out of their ranges or tiles of another grid, HDRP_ERROR_UNSUPPORTED where the
- *            pass was not asked for, HDRP_ERROR_OUT_OF_DEVICE_MEMORY beyond desc.frame_passes, of
+ *            pass was not asked for, HDRP_ERROR_TOO_LARGE where a buffer exceeds the limit
+ *            maxStorageBufferRange, HDRP_ERROR_OUT_OF_DEVICE_MEMORY beyond desc.frame_passes, of
  *            which it takes two, and those of the driver as for hdrp_gpu_vk_init
  *  note      equal to the CPU, order included. Pixels that show the sky or are of another kind
  *            need nothing; a tile of such pixels alone is not lit. The arguments may be read by
@@ -307,13 +313,13 @@ typedef struct hdrp_gpu_vk_lit {
  *  lighting  after hdrp_gpu_vk_write_lighting, with the same contents
  *  variants  as for hdrp_gpu_vk_classify
  *  tiles     after hdrp_gpu_vk_classify
- *  lit       result; split where lighting.split was set
+ *  lit       result; diffuse is needed where lighting->split is set
  *  returns   HDRP_OK, or an error, with nothing recorded
  *  errors    those of hdrp_gpu_vk_classify; it takes one of desc.frame_passes
- *  note      sky and pixels of other kinds are left untouched, and so are those of diffuse that have
- *            no subsurface scattering: clear it before. Attachments are for the caller to order,
- *            before and afterwards; a barrier for compute, fragment shaders and copies is recorded.
- *            Light loops end at directional lights with an index of light_count and beyond */
+ *  note      within 1e-3 of the same loop on the CPU, the root of the mean square. Sky and pixels
+ *            of other kinds are left untouched, and so is diffuse where there is no subsurface
+ *            scattering: clear it before. Attachments are for the caller to order, before and
+ *            afterwards; barriers for compute, fragment shaders and copies are recorded */
 HDRP_API hdrp_result hdrp_gpu_vk_light_deferred(hdrp_gpu_vk* gpu, VkCommandBuffer commands,
                                                 const hdrp_gpu_vk_lighting* lighting,
                                                 const hdrp_gpu_vk_variants* variants,
@@ -437,7 +443,7 @@ HDRP_I_GPU_VK_FN void hdrp_i_gpu_vk_fill_lighting(const hdrp_gpu_vk_lighting* l,
     p->camera = l->camera;
     p->grid = l->grid;
     if (l->device) {
-        p->device = *l->device;
+        p->depth = *l->device;
     }
     p->picture = hdrp_u32x4_make(l->width_px, l->height_px, hdrp_i_gpu_vk_there_is(l),
                                  l->shadow_mask != VK_NULL_HANDLE ? l->masked_count : 0u);

@@ -53,7 +53,7 @@
  *       solid_angle_spot candela_from_lumen_spot lumen_from_candela_spot pyramid_shape_make
  *       pyramid_attenuation box_attenuation
  *   light record: type affects sign directional point spot pyramid box
- *   evaluation: eval_directional eval_point eval_spot eval_pyramid eval_box eval
+ *   evaluation: eval_directional eval_point eval_spot eval_pyramid eval_box eval sine variance
  * >>end */
 #ifndef HDRP_LIGHT_H
 #define HDRP_LIGHT_H
@@ -1445,17 +1445,24 @@ HDRP_FN float hdrp_light_sine(hdrp_light light, hdrp_light_incident incident)
                                                                  : sine;
 }
 
-/** Variance of normals that widens a highlight as the size of a source does.
- *  sine     [0,1]  from hdrp_light_sine
- *  returns  [0,0.125]  in units of alpha^2, for hdrp_brdf_lit_view_widened
- *  edges    none
- *  error    none: a model
- *  source   half vectors move by half the angle, so that their slopes are even over a disc of radius
- *           sine / 2, whose variance along an axis is a quarter of its square; alpha^2 is twice a
- *           variance */
-HDRP_FN float hdrp_light_variance(float sine)
+/* hdrp_light_variance of a source that is seen under twice an angle of that sine. */
+HDRP_FN float hdrp_i_light_variance_of_sine(float sine)
 {
     return 0.5f * hdrp_sq(0.5f * sine);
+}
+
+/** Variance of normals that widens a highlight as the size of a source does.
+ *  light     valid
+ *  incident  valid  of the light, at the place that sees it
+ *  returns   [0,0.125]  in units of alpha^2, for hdrp_brdf_lit_view_widened
+ *  edges     those of hdrp_light_sine
+ *  error     none: a model
+ *  source    half vectors move by half the angle, so that their slopes are even over a disc of
+ *            radius sine / 2, whose variance along an axis is a quarter of its square; alpha^2 is
+ *            twice a variance */
+HDRP_FN float hdrp_light_variance(hdrp_light light, hdrp_light_incident incident)
+{
+    return hdrp_i_light_variance_of_sine(hdrp_light_sine(light, incident));
 }
 
 #endif /* HDRP_LIGHT_H */

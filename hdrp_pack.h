@@ -34,7 +34,8 @@
  *   normal buffer: normal_buffer_encode normal_buffer_decode
  *   SSS buffer: sss_buffer_encode sss_buffer_decode
  *   GBuffer: gbuffer_features gbuffer_texel_features gbuffer_losses gbuffer_supports gbuffer_encode
- *       gbuffer_decode gbuffer_decode_extra gbuffer_texel_from_targets gbuffer_targets_from_texel
+ *       gbuffer_decode_features gbuffer_decode gbuffer_decode_extra gbuffer_texel_from_targets
+ *       gbuffer_targets_from_texel
  * >>end */
 #ifndef HDRP_PACK_H
 #define HDRP_PACK_H
@@ -1277,7 +1278,7 @@ HDRP_FN hdrp_brdf_data hdrp_i_pack_gbuffer_decode_sss(hdrp_brdf_data d, hdrp_v4 
  *  error     none: see hdrp_pack_gbuffer_encode
  *  source    Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
  *            Definition Render Pipeline", GBuffer slides
- *  note      a caller whose diffusion profiles have an F0 or a transmittance sets them afterwards */
+ *  note      a caller whose profiles have an F0 or a transmittance sets them afterwards */
 HDRP_FN hdrp_brdf_data hdrp_pack_gbuffer_decode_features(hdrp_pack_gbuffer g, hdrp_u32 targets,
                                                          hdrp_u32 features)
 {

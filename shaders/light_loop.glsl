@@ -230,7 +230,7 @@ void hdrp_i_add_light(inout hdrp_lit_surface r, hdrp_brdf_data d, hdrp_brdf_lit_
     bool parallel = hdrp_i_has_light(HDRP_LIGHT_TYPE_DIRECTIONAL) ||
                     hdrp_i_has(HDRP_GPU_VK_WORD_DIRECTIONAL);
     float sine = parallel ? hdrp_light_sine(light, i) : hdrp_i_light_sine_near(light, i);
-    hdrp_brdf_lit s = hdrp_i_eval(d, w, kept, i.l, hdrp_light_variance(sine));
+    hdrp_brdf_lit s = hdrp_i_eval(d, w, kept, i.l, hdrp_i_light_variance_of_sine(sine));
     vec3 lux = i.illuminance * visible;
     if (hdrp_i_has(HDRP_GPU_VK_WORD_NEGATIVE)) {
         lux *= hdrp_light_sign(light);

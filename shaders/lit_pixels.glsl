@@ -6,7 +6,7 @@ float view_depth(ivec2 pixel)
 {
     float texel = texelFetch(depths, pixel, 0).x;
     bool is_device = (lighting.picture.z & HDRP_GPU_VK_LIGHTING_DEVICE_DEPTH) != 0u;
-    return is_device ? hdrp_view_depth(lighting.device, texel) : texel;
+    return is_device ? hdrp_view_depth(lighting.depth, texel) : texel;
 }
 
 // The same; negative where there is nothing to light.
