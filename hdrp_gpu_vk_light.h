@@ -360,47 +360,13 @@ typedef struct hdrp_i_gpu_vk_lighting_data {
 typedef char hdrp_i_gpu_vk_lighting_data_size
     [sizeof(hdrp_i_gpu_vk_lighting_data) == HDRP_GPU_VK_LIGHTING_BYTES ? 1 : -1];
 
-/* A barrier for memory of all kinds. */
-HDRP_I_GPU_VK_FN void hdrp_i_gpu_vk_barrier(const hdrp_gpu_vk* gpu, VkCommandBuffer commands,
-                                            VkPipelineStageFlags from, VkAccessFlags written,
-                                            VkPipelineStageFlags to, VkAccessFlags used)
-{
-    VkMemoryBarrier all;
-    memset(&all, 0, sizeof all);
-    all.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
-    all.srcAccessMask = written;
-    all.dstAccessMask = used;
-    gpu->vk.CmdPipelineBarrier(commands, from, to, 0u, 1u, &all, 0u, NULL, 0u, NULL);
-}
-
-/* vkCmdUpdateBuffer, ordered after what shaders read before and in front of what they read next. */
-HDRP_I_GPU_VK_FN void hdrp_i_gpu_vk_update(const hdrp_gpu_vk* gpu, VkCommandBuffer commands,
-                                           VkBuffer buffer, VkDeviceSize offset, size_t bytes,
-                                           const void* data)
-{
-    hdrp_i_gpu_vk_barrier(gpu, commands, gpu->shader_stages | VK_PIPELINE_STAGE_TRANSFER_BIT,
-                          VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT,
-                          VK_ACCESS_TRANSFER_WRITE_BIT);
-    gpu->vk.CmdUpdateBuffer(commands, buffer, offset, bytes, data);
-    hdrp_i_gpu_vk_barrier(gpu, commands, VK_PIPELINE_STAGE_TRANSFER_BIT,
-                          VK_ACCESS_TRANSFER_WRITE_BIT, gpu->shader_stages,
-                          VK_ACCESS_UNIFORM_READ_BIT | VK_ACCESS_SHADER_READ_BIT);
-}
-
 /* ---- what lighting reads --------------------------------------------------------------------- */
-
-/* Whether a number of tiles of a size is not what covers a side of a picture. */
-HDRP_I_GPU_VK_FN int hdrp_i_gpu_vk_bad_tiles(uint32_t size_px, uint32_t tile_px, uint32_t tiles)
-{
-    return size_px - 1u >= HDRP_CULL_SIZE_MAX || tile_px - 1u >= HDRP_CULL_SIZE_MAX ||
-           tiles != (size_px + tile_px - 1u) / tile_px;
-}
 
 HDRP_I_GPU_VK_FN int hdrp_i_gpu_vk_bad_lighting(const hdrp_gpu_vk_lighting* l)
 {
     hdrp_u32x4 tiles = l->grid.tiles;
-    return hdrp_i_gpu_vk_bad_tiles(l->width_px, tiles.x, tiles.z) ||
-           hdrp_i_gpu_vk_bad_tiles(l->height_px, tiles.y, tiles.w) ||
+    return hdrp_i_gpu_vk_bad_side(l->width_px, tiles.x, tiles.z) ||
+           hdrp_i_gpu_vk_bad_side(l->height_px, tiles.y, tiles.w) ||
            l->grid.cells.x - 1u >= HDRP_CULL_SLICES_MAX || l->grid.cells.y == 0u ||
            l->light_count - 1u >= 1u << 20 || l->directional_count > l->light_count ||
            l->first_directional > l->light_count - l->directional_count ||
