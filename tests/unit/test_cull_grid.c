@@ -232,6 +232,7 @@ static void entries_hold_an_index_and_blocks(void** state)
                 /* a tile in the middle of the picture: 5 columns and 7 rows before it */
                 assert_int_equal(hdrp_cull_entry_covers(g, entry, 160u + x, 112u + y),
                                  own == block ? 1u : 0u);
+                assert_int_equal(hdrp_cull_entry_bit(g, 160u + x, 112u + y), 1u << (16u + own));
             }
         }
     }
