@@ -2,5 +2,6 @@
 #define HDRP_BRDF_IMPLEMENTATION
 #define HDRP_CULL_IMPLEMENTATION
 #define HDRP_GPU_VK_IMPLEMENTATION
+#define HDRP_SHADOW_IMPLEMENTATION
 #include "hdrp_brdf.h"
 #include "hdrp_gpu_vk.h"
