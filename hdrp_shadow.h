@@ -185,7 +185,8 @@ HDRP_FN hdrp_u32 hdrp_shadow_border_px(hdrp_u32 filter_kind)
 }
 
 /* Weights of up to six texels in a row: of the texels at base, base + 2 and base + 4 from the one
- * whose centre is last at or before the position, and of those behind each. */
+ * whose centre is last at or before the position, and of those behind each. Made by
+ * hdrp_shadow_weights_make. */
 struct hdrp_shadow_weights {
     hdrp_v3 even; /* [0,1] */
     hdrp_v3 odd;  /* [0,1] */
