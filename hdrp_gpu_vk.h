@@ -21,14 +21,21 @@
  *
  *     hdrp_gpu_vk_begin_frame(&gpu, frame_number % 2);
  *     hdrp_gpu_vk_fgd_bake(&gpu, commands, &table);       once; outside of render passes, like all
- *     hdrp_gpu_vk_measure_depth(&gpu, commands, &depth);
+ *     hdrp_gpu_vk_build_lists(&gpu, commands, &lists, &frame);     of hdrp_gpu_vk_lists_create
  *
- * Nothing is submitted and nothing is waited for. A pass does what the function of the same name
- * does on the CPU: hdrp_brdf_fgd_bake_rows, hdrp_cull_measure_depth. Each says in which layouts it
+ * Nothing is submitted and nothing is waited for. A pass does what a function does on the CPU:
+ * hdrp_brdf_fgd_bake_rows, hdrp_cull_measure_depth, hdrp_cull_build. Each says in which layouts it
  * takes and leaves images. What it writes may have been read or written by compute and fragment
  * shaders and by copies in earlier commands of the same queue, and may be read by them in later
  * ones: the barriers for that are recorded. What it reads is for the caller to make visible to the
  * compute stage, and so is what comes from another queue or goes there.
+ *
+ * Lists depend on no shading: a context of its own, for the family of a queue that only computes,
+ * records them there while the graphics queue draws shadows. Their buffers are of exclusive
+ * sharing, so that the caller hands them over with a semaphore and, between families, a pair of
+ * barriers.
+ *
+ * hdrp_gpu_vk_lists_create needs the bodies of hdrp_cull.h: HDRP_CULL_IMPLEMENTATION in one file.
  *
  * Pipelines, sets and push constants of VK_PIPELINE_BIND_POINT_COMPUTE are not what they were after
  * a pass. Memory of the host is asked for by the driver alone, through desc.allocation. An
@@ -43,6 +50,7 @@
 #include "hdrp_gpu_vk_core.h"
 #include "hdrp_gpu_vk_cull.h"
 #include "hdrp_gpu_vk_env.h"
+#include "hdrp_gpu_vk_light.h"
 #include "hdrp_gpu_vk_shadow.h"
 
 #if HDRP_VERSION != 100
@@ -102,6 +110,7 @@ HDRP_API hdrp_result hdrp_gpu_vk_begin_frame(hdrp_gpu_vk* gpu, uint32_t frame);
 #include "hdrp_gpu_vk_core.h"
 #include "hdrp_gpu_vk_cull.h"
 #include "hdrp_gpu_vk_env.h"
+#include "hdrp_gpu_vk_light.h"
 #include "hdrp_gpu_vk_shadow.h"
 
 #ifdef __cplusplus
@@ -177,7 +186,14 @@ static void hdrp_i_gpu_vk_check(hdrp_gpu_vk_functions* vk, const hdrp_gpu_vk_des
     hdrp_i_gpu_vk_need(missing, properties.apiVersion >= VK_API_VERSION_1_1, "Vulkan 1.1");
     hdrp_i_gpu_vk_need(missing, (hdrp_i_gpu_vk_queue_flags(vk, desc) & VK_QUEUE_COMPUTE_BIT) != 0u,
                        "VK_QUEUE_COMPUTE_BIT in the queue family");
-    if (passes & (HDRP_GPU_VK_PASS_FGD | HDRP_GPU_VK_PASS_SHADOW)) {
+    if (passes & HDRP_GPU_VK_PASS_LISTS) {
+        hdrp_i_gpu_vk_need(missing,
+                           properties.limits.maxPerStageDescriptorStorageBuffers >=
+                               HDRP_I_GPU_VK_LIST_BUFFERS,
+                           "maxPerStageDescriptorStorageBuffers of 10");
+    }
+    if (passes & (HDRP_GPU_VK_PASS_FGD | HDRP_GPU_VK_PASS_LIGHT | HDRP_GPU_VK_PASS_SHADOW |
+                  HDRP_GPU_VK_PASS_ENVIRONMENT | HDRP_GPU_VK_PASS_TONE_MAP)) {
         hdrp_i_gpu_vk_need(missing,
                            desc->features && desc->features->shaderStorageImageWriteWithoutFormat,
                            "shaderStorageImageWriteWithoutFormat");
@@ -203,7 +219,7 @@ HDRP_API const char* hdrp_gpu_vk_missing(const hdrp_gpu_vk_desc* desc, uint32_t 
 static VkResult hdrp_i_gpu_vk_pool(hdrp_gpu_vk* gpu, VkDescriptorPool* pool)
 {
     static const char letters[] = "stcbu";
-    static const uint32_t at_most[] = {4u, 8u, 8u, 16u, 2u}; /* of each in a shader */
+    static const uint32_t at_most[] = {4u, 12u, 8u, 16u, 2u}; /* of each in a shader */
     VkDescriptorPoolSize sizes[5];
     VkDescriptorPoolCreateInfo info;
     uint32_t i;
@@ -247,7 +263,7 @@ static VkResult hdrp_i_gpu_vk_make_shaders(hdrp_gpu_vk* gpu,
             continue;
         }
         r = hdrp_i_gpu_vk_layouts(gpu, &shader, made);
-        if (r == VK_SUCCESS) {
+        if (r == VK_SUCCESS && shader.has_variants == 0u) {
             r = hdrp_i_gpu_vk_specialise(gpu, &shader, made->layout, NULL, &made->pipeline);
         }
     }
@@ -260,6 +276,7 @@ static VkResult hdrp_i_gpu_vk_make(hdrp_gpu_vk* gpu)
     uint32_t i;
     r = r == VK_SUCCESS ? hdrp_i_gpu_vk_make_shaders(gpu, hdrp_i_gpu_vk_cull_shader) : r;
     r = r == VK_SUCCESS ? hdrp_i_gpu_vk_make_shaders(gpu, hdrp_i_gpu_vk_env_shader) : r;
+    r = r == VK_SUCCESS ? hdrp_i_gpu_vk_make_shaders(gpu, hdrp_i_gpu_vk_light_shader) : r;
     r = r == VK_SUCCESS ? hdrp_i_gpu_vk_make_shaders(gpu, hdrp_i_gpu_vk_shadow_shader) : r;
     for (i = 0u; i < gpu->desc.frames && r == VK_SUCCESS; ++i) {
         r = hdrp_i_gpu_vk_pool(gpu, &gpu->pools[i]);
