@@ -66,17 +66,11 @@ static hdrp_v3 eye_of(const picture* p)
     return hdrp_v3_from_v4(p->camera.eye_near);
 }
 
-/* What the shader makes of a pixel and its depth, in the same steps. */
+/* What the shader makes of a pixel and its depth. */
 static hdrp_v3 position_of(const picture* p, float x_px, float y_px, float z)
 {
-    const hdrp_cull_camera* c = &p->camera;
-    float x = c->window.x + c->window.z * (x_px / (float)p->width);
-    float y = c->window.y + c->window.w * (1.0f - y_px / (float)p->height);
-    float spread = c->forward_orthographic.w > 0.0f ? 1.0f : z;
-    hdrp_v3 r = hdrp_v3_scale(hdrp_v3_from_v4(c->forward_orthographic), z);
-    r = hdrp_v3_mad(r, hdrp_v3_from_v4(c->right_far), x * spread);
-    r = hdrp_v3_mad(r, hdrp_v3_from_v4(c->up), y * spread);
-    return hdrp_v3_add(eye_of(p), r);
+    return hdrp_v3_add(eye_of(p), hdrp_cull_offset_of_pixel(p->camera, x_px, y_px, (float)p->width,
+                                                            (float)p->height, z));
 }
 
 static hdrp_v3 position_of_pixel(const picture* p, uint32_t x, uint32_t y, float z)
