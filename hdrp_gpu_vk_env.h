@@ -464,13 +464,6 @@ HDRP_I_GPU_VK_FN hdrp_result hdrp_i_gpu_vk_env_image_check(const hdrp_gpu_vk_env
     return HDRP_OK;
 }
 
-HDRP_I_GPU_VK_FN void hdrp_i_gpu_vk_bound_buffer(hdrp_i_gpu_vk_bound* bound,
-                                                 const hdrp_gpu_vk_buffer* buffer)
-{
-    bound->buffer.buffer = buffer->buffer;
-    bound->buffer.range = VK_WHOLE_SIZE;
-}
-
 HDRP_API hdrp_result hdrp_gpu_vk_env_resample(hdrp_gpu_vk* gpu, VkCommandBuffer commands,
                                               const hdrp_gpu_vk_env* env,
                                               const hdrp_gpu_vk_env_image* image,
