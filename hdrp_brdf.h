@@ -16,7 +16,7 @@
  * >>index of the functions, without hdrp_brdf_ (written by tools/api_check.py --write)
  *   material: surface_default diffuse_color fresnel0 data_from_surface metallic_from_colors
  *       data_from_diffuse_specular dielectric_fresnel0
- *   lit: lit_view_make lit_eval dominant_direction lit_env_make
+ *   lit: lit_view_make lit_view_widened lit_eval dominant_direction lit_env_make
  *   sampling lit: lit_pdf lit_sample
  *   fgd table, C and C++ only: fgd_integrate fgd_bake_rows fgd_lookup
  * >>end */
@@ -658,6 +658,22 @@ HDRP_FN hdrp_brdf_lit_view hdrp_brdf_lit_view_make(hdrp_brdf_data d, hdrp_v3 v, 
         w.coat_alpha = hdrp_brdf_alpha_from_perceptual_roughness(d.coat_perceptual_roughness);
         w.below_coat = hdrp_i_brdf_below_coat(d.coat_mask, w.coat_n_dot_v);
     }
+    return w;
+}
+
+/** The view for a light whose source has a size: as if normals varied that much more.
+ *  w         valid
+ *  variance  [0,1]  in units of alpha^2, such as hdrp_light_variance gives
+ *  returns   valid  for hdrp_brdf_lit_eval alone
+ *  edges     unchanged for variance 0
+ *  error     none: variances of independent deviations add up
+ *  source    Kaplanyan et al. 2016, "Filtering Distributions of Normals for Shading Antialiasing",
+ *            eq. 8 */
+HDRP_FN hdrp_brdf_lit_view hdrp_brdf_lit_view_widened(hdrp_brdf_lit_view w, float variance)
+{
+    w.alphas.t = hdrp_sqrt(w.alphas.t * w.alphas.t + variance);
+    w.alphas.b = hdrp_sqrt(w.alphas.b * w.alphas.b + variance);
+    w.coat_alpha = hdrp_sqrt(w.coat_alpha * w.coat_alpha + variance);
     return w;
 }
 

@@ -16,7 +16,7 @@
  *
  * >>index of the functions, without hdrp_cull_ (written by tools/api_check.py --write)
  *   grid: log2 series_scale opaque_depth tile_of_depths grid_make tile_of_pixel slice cell
- *   lists: first last entry_index entry_covers mask_words mask_word mask_bit lowest_bit
+ *   lists: first last entry_index entry_covers entry_bit mask_words mask_word mask_bit lowest_bit
  * >>end */
 #ifndef HDRP_CULL_GRID_H
 #define HDRP_CULL_GRID_H
@@ -272,6 +272,22 @@ HDRP_FN hdrp_u32 hdrp_cull_entry_covers(hdrp_cull_grid grid, hdrp_u32 entry, hdr
     hdrp_u32 x = (x_px % grid.tiles.x) / grid.cells.z;
     hdrp_u32 y = (y_px % grid.tiles.y) / grid.cells.w;
     return (entry >> (16u + ((y & 3u) * 4u + (x & 3u)))) & 1u;
+}
+
+/** The bit of entries that stands for the block of a pixel, for loops over many of them:
+ *  hdrp_cull_entry_covers tests it.
+ *  grid     valid
+ *  x_px     any
+ *  y_px     any
+ *  returns  any  a single bit of the upper half
+ *  edges    the pixel has to be in the tile of the list
+ *  error    none: a selection of bits
+ *  source   a definition */
+HDRP_FN hdrp_u32 hdrp_cull_entry_bit(hdrp_cull_grid grid, hdrp_u32 x_px, hdrp_u32 y_px)
+{
+    hdrp_u32 x = (x_px % grid.tiles.x) / grid.cells.z;
+    hdrp_u32 y = (y_px % grid.tiles.y) / grid.cells.w;
+    return 1u << (16u + ((y & 3u) * 4u + (x & 3u)));
 }
 
 /* Where a pixel is in the mask of a tile: block by block, in each row by row. */

@@ -30,9 +30,11 @@ extern "C" {
 #define HDRP_GPU_VK_PASS_FGD         1u
 #define HDRP_GPU_VK_PASS_DEPTH       2u
 #define HDRP_GPU_VK_PASS_LISTS       4u /* with depth */
+#define HDRP_GPU_VK_PASS_LIGHT       32u
+#define HDRP_GPU_VK_PASS_SHADOW      64u
 #define HDRP_GPU_VK_PASS_ENVIRONMENT 128u
 #define HDRP_GPU_VK_PASS_TONE_MAP    256u
-#define HDRP_GPU_VK_PASS_ALL         391u
+#define HDRP_GPU_VK_PASS_ALL         487u
 
 /* Room for the compute shaders of all passes. */
 #define HDRP_GPU_VK_SHADERS_MAX 32u
@@ -267,7 +269,7 @@ extern "C" {
 
 /* ---- what a pass is made of ------------------------------------------------------------------ */
 
-#define HDRP_I_GPU_VK_BINDINGS_MAX 20u
+#define HDRP_I_GPU_VK_BINDINGS_MAX 24u
 
 /* Places in hdrp_gpu_vk.pipelines. */
 #define HDRP_I_GPU_VK_FGD              0u
@@ -277,6 +279,10 @@ extern "C" {
 #define HDRP_I_GPU_VK_CULL_TILES       4u
 #define HDRP_I_GPU_VK_CULL_PIXELS      5u
 #define HDRP_I_GPU_VK_CULL_CLUSTERS    6u
+#define HDRP_I_GPU_VK_CLASSIFY         16u
+#define HDRP_I_GPU_VK_DISPATCH         17u
+#define HDRP_I_GPU_VK_DEFERRED         18u
+#define HDRP_I_GPU_VK_SHADOW           28u
 #define HDRP_I_GPU_VK_ENV_FROM_LATLONG 20u
 #define HDRP_I_GPU_VK_ENV_FROM_CUBE    21u
 #define HDRP_I_GPU_VK_ENV_REDUCE       22u
@@ -294,6 +300,7 @@ typedef struct hdrp_i_gpu_vk_shader {
     size_t bytes;
     const char* bindings;
     uint32_t push_bytes;
+    uint32_t has_variants; /* 1: its pipelines are made later, specialised */
 } hdrp_i_gpu_vk_shader;
 
 HDRP_I_GPU_VK_FN hdrp_i_gpu_vk_shader hdrp_i_gpu_vk_shader_make(uint32_t index, uint32_t pass,
@@ -812,16 +819,17 @@ HDRP_I_GPU_VK_FN void hdrp_i_gpu_vk_next(const hdrp_gpu_vk* gpu, VkCommandBuffer
 /* Parameters of a pass, of at most 65536 bytes, for its shaders; what was recorded before has read
  * the old ones. */
 HDRP_I_GPU_VK_FN void hdrp_i_gpu_vk_update(const hdrp_gpu_vk* gpu, VkCommandBuffer commands,
-                                           const hdrp_gpu_vk_buffer* buffer, const void* parameters,
-                                           size_t bytes)
+                                           VkBuffer buffer, VkDeviceSize offset, size_t bytes,
+                                           const void* data)
 {
     hdrp_i_gpu_vk_barrier(gpu, commands, gpu->shader_stages | VK_PIPELINE_STAGE_TRANSFER_BIT,
                           VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT,
                           VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT);
-    gpu->vk.CmdUpdateBuffer(commands, buffer->buffer, 0u, bytes, parameters);
+    gpu->vk.CmdUpdateBuffer(commands, buffer, offset, bytes, data);
     hdrp_i_gpu_vk_barrier(gpu, commands, VK_PIPELINE_STAGE_TRANSFER_BIT,
-                          VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
-                          VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
+                          VK_ACCESS_TRANSFER_WRITE_BIT, gpu->shader_stages,
+                          VK_ACCESS_UNIFORM_READ_BIT | VK_ACCESS_SHADER_READ_BIT |
+                              VK_ACCESS_SHADER_WRITE_BIT);
 }
 
 /* What a pass writes is ordered after everything that shaders and copies did to it before, or seen

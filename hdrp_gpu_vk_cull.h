@@ -509,7 +509,7 @@ HDRP_API hdrp_result hdrp_gpu_vk_build_lists(hdrp_gpu_vk* gpu, VkCommandBuffer c
     coarse = hdrp_i_gpu_vk_coarse_cells(&l.desc);
     tiles = l.grid.tiles.z * l.grid.tiles.w;
     tiles = tiles > l.count ? tiles : l.count; /* what the first shader has to do */
-    hdrp_i_gpu_vk_update(gpu, commands, &l.frame, &parameters, sizeof parameters);
+    hdrp_i_gpu_vk_update(gpu, commands, l.frame.buffer, 0u, sizeof parameters, &parameters);
     hdrp_i_gpu_vk_dispatch(gpu, commands, &sets.project, sets.project_set, NULL,
                            (tiles + HDRP_I_GPU_VK_GROUP - 1u) / HDRP_I_GPU_VK_GROUP, 1u);
     hdrp_i_gpu_vk_next(gpu, commands);

@@ -4,4 +4,5 @@
 #define HDRP_ENV_IMPLEMENTATION
 #define HDRP_GPU_VK_IMPLEMENTATION
 #include "hdrp_brdf.h"
+#include "hdrp_env.h"
 #include "hdrp_gpu_vk.h"
