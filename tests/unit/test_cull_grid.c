@@ -294,8 +294,7 @@ static void slices_meet_a_little_wider_than_they_are(void** state)
         assert_int_equal(hdrp_cull_slice(g, tile.z, middle), k);
         assert_true(r.nearest <= last && r.nearest >= last * 0.99995f);
         assert_true(k == 0 || hdrp_cull_slice(g, tile.z, r.nearest) == k - 1);
-        assert_true(k == 23 ? r.farthest == 1e5f
-                            : hdrp_cull_slice(g, tile.z, r.farthest) == k + 1);
+        assert_true(k == 23 ? r.farthest == 1e5f : hdrp_cull_slice(g, tile.z, r.farthest) == k + 1);
         last = r.farthest;
     }
     assert_true(hdrp_cull_slice_begin(g, tile.z, 12) > 69.9f &&
