@@ -10,7 +10,7 @@
 #include "cull_lists.glsl"
 
 #define BATCH     1024
-#define OF_THREAD 4 // slices: HDRP_CULL_SLICES_MAX / GROUP
+#define OF_THREAD 4 // slices, at most: HDRP_CULL_SLICES_MAX / GROUP
 
 layout(local_size_x = GROUP) in;
 
@@ -18,6 +18,8 @@ shared uint hits[BATCH]; // candidate of the batch | category << 10 | first slic
 shared uint needed;      // entries of all hits
 shared uint dropped;
 shared uint scan[GROUP];
+// Of each slice the counts of the four categories, 16 bits each; then in x where its next entry goes.
+shared uvec2 counts[HDRP_CULL_SLICES_MAX];
 
 uint tile_index;
 uint first_candidate;
@@ -26,25 +28,24 @@ float scale;
 Window window;
 
 // The slices of a candidate, as hits keep them; false where it misses the tile.
-bool ask(uint candidate, out uint hit, out uint order, out uint index)
+bool ask(uint candidate, out uint hit)
 {
-    index = coarse[first_candidate + candidate];
-    Seen s = seen_shapes[index];
-    hdrp_cull_interval r = depths_in(window, index, s, false);
-    order = s.order;
-    hit = 0u;
-    if (r.nearest > r.farthest) {
-        return false;
-    }
-    hit = candidate % BATCH | category_of(s) << 10 |
+    uint index = coarse[first_candidate + candidate];
+    hdrp_cull_interval r = depths_in(window, index, seen_shapes[index], false);
+    hit = candidate % BATCH | category_of(seen_shapes[index]) << 10 |
           hdrp_cull_slice(frame.grid, scale, r.nearest) << 12 |
           hdrp_cull_slice(frame.grid, scale, r.farthest) << 20;
-    return true;
+    return r.nearest <= r.farthest;
 }
 
 uint slices_of(uint hit)
 {
     return 1u + (hit >> 20) - (hit >> 12 & 255u);
+}
+
+bool has_room(uint index)
+{
+    return is_kept(seen_shapes[index].order, index);
 }
 
 // The hits of a batch in order; returns how many. With a limit those without room are left out.
@@ -54,9 +55,9 @@ uint collect(uint batch, bool limited)
     uint n = 0u;
     for (uint from = batch * BATCH; from < end; from += GROUP) {
         uint candidate = from + gl_LocalInvocationIndex;
-        uint hit, order, index, total;
-        bool found = candidate < end && ask(candidate, hit, order, index);
-        if (found && limited && !is_kept(order, index)) {
+        uint hit, total;
+        bool found = candidate < end && ask(candidate, hit);
+        if (found && limited && !has_room(coarse[first_candidate + candidate])) {
             atomicAdd(dropped, 1u); // what cells say is read before they are asked once more
             found = false;
         }
@@ -111,7 +112,6 @@ uint end_slice()
     return min(first_slice() + of_thread, frame.grid.cells.x);
 }
 
-// Counts of the four categories, 16 bits each.
 uvec2 one_more(uvec2 counts, uint category)
 {
     uint one = 1u << ((category & 1u) << 4);
@@ -128,7 +128,7 @@ bool is_in(uint slice, uint end, uint hit)
     return slice < end && slice >= (hit >> 12 & 255u) && slice <= hit >> 20;
 }
 
-void count_slices(uint n, inout uvec2 counts[OF_THREAD])
+void count_slices(uint n)
 {
     uint first = first_slice();
     uint end = end_slice();
@@ -136,7 +136,7 @@ void count_slices(uint n, inout uvec2 counts[OF_THREAD])
         uint hit = hits[h];
         for (uint j = 0u; j < OF_THREAD; ++j) {
             if (is_in(first + j, end, hit)) {
-                counts[j] = one_more(counts[j], hit >> 10 & 3u);
+                counts[first + j] = one_more(counts[first + j], hit >> 10 & 3u);
             }
         }
     }
@@ -157,7 +157,7 @@ uint place_of_thread(uint own)
     return scan[thread] - own;
 }
 
-void write_entries(uint batch, uint n, inout uint next[OF_THREAD])
+void write_entries(uint batch, uint n)
 {
     uint first = first_slice();
     uint end = end_slice();
@@ -165,25 +165,25 @@ void write_entries(uint batch, uint n, inout uint next[OF_THREAD])
         uint hit = hits[h];
         for (uint j = 0u; j < OF_THREAD; ++j) {
             if (is_in(first + j, end, hit)) {
-                entries[next[j]++] = candidate_of(batch, hit) | 0xffff0000u;
+                entries[counts[first + j].x++] = candidate_of(batch, hit) | 0xffff0000u;
             }
         }
     }
 }
 
-// Writes the cells of a thread; next is where the entries of each begin.
-void write_cells(uvec2 counts[OF_THREAD], out uint next[OF_THREAD])
+// Writes the cells of a thread.
+void write_cells()
 {
     uint own = 0u;
-    for (uint j = 0u; j < OF_THREAD; ++j) {
-        own += sum_of(counts[j]);
+    for (uint k = first_slice(); k < end_slice(); ++k) {
+        own += sum_of(counts[k]);
     }
     uint at = tile_index * frame.grid.cells.y + place_of_thread(own);
-    uint first = first_slice();
-    for (uint k = first; k < end_slice(); ++k) {
-        cells[tile_index * frame.grid.cells.x + k] = uvec4(at, counts[k - first], dropped);
-        next[k - first] = at;
-        at += sum_of(counts[k - first]);
+    for (uint k = first_slice(); k < end_slice(); ++k) {
+        uvec2 of_slice = counts[k];
+        cells[tile_index * frame.grid.cells.x + k] = uvec4(at, of_slice, dropped);
+        counts[k].x = at;
+        at += sum_of(of_slice);
     }
     if (gl_LocalInvocationIndex == 0u) {
         dropped_of_tile[tile_index] = dropped;
@@ -201,8 +201,6 @@ void main()
     uvec2 tile = gl_WorkGroupID.xy;
     uvec2 begin = tile * frame.grid.tiles.xy;
     uint n = 0u;
-    uvec2 counts[OF_THREAD] = uvec2[OF_THREAD](uvec2(0u), uvec2(0u), uvec2(0u), uvec2(0u));
-    uint next[OF_THREAD];
     tile_index = tile.y * frame.grid.tiles.z + tile.x;
     first_candidate = candidates_of(tile);
     candidate_count = coarse[first_candidate - 1u];
@@ -213,6 +211,9 @@ void main()
     if (gl_LocalInvocationIndex == 0u) {
         needed = 0u;
         dropped = 0u;
+    }
+    for (uint k = first_slice(); k < end_slice(); ++k) {
+        counts[k] = uvec2(0u);
     }
     begin_room();
     barrier();
@@ -227,7 +228,7 @@ void main()
             begin_level();
         }
         if (phase == PHASE_WRITE) {
-            write_cells(counts, next);
+            write_cells();
         }
         if (phase == PHASE_COUNT && gl_LocalInvocationIndex == 0u) {
             dropped = 0u;
@@ -242,9 +243,9 @@ void main()
             } else if (level) {
                 add_digits(b, n, phase - PHASE_LEVEL);
             } else if (phase == PHASE_COUNT) {
-                count_slices(n, counts);
+                count_slices(n);
             } else {
-                write_entries(b, n, next);
+                write_entries(b, n);
             }
             barrier();
         }
