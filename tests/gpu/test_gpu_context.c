@@ -305,6 +305,7 @@ typedef struct resources {
     hdrp_gpu_vk_image table, sky, shown;
     hdrp_gpu_vk_cube cube;
     hdrp_gpu_vk_env env;
+    hdrp_gpu_vk_tiles classified;
 } resources;
 
 static hdrp_result make_resources(const hdrp_gpu_vk* gpu, resources* made)
@@ -312,6 +313,7 @@ static hdrp_result make_resources(const hdrp_gpu_vk* gpu, resources* made)
     const hdrp_env_desc small = {4, 4, 0, 2, 0.0f};
     const VkFormat format = VK_FORMAT_R32G32B32A32_SFLOAT;
     const VkImageUsageFlags both = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+    const hdrp_cull_grid grid = {.tiles = {16, 16, 2, 1}};
     hdrp_result r =
         hdrp_gpu_vk_buffer_create(gpu, 64, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
                                   VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, "tiles", &made->tiles);
@@ -323,12 +325,14 @@ static hdrp_result make_resources(const hdrp_gpu_vk* gpu, resources* made)
                                                 &made->shown)
                      : r;
     r = r == HDRP_OK ? hdrp_gpu_vk_cube_create(gpu, format, 8, 4, both, "cube", &made->cube) : r;
+    r = r == HDRP_OK ? hdrp_gpu_vk_tiles_create(gpu, grid, &made->classified) : r;
     return r == HDRP_OK ? hdrp_gpu_vk_env_create(gpu, &small, format, &made->env) : r;
 }
 
 static void destroy_resources(const hdrp_gpu_vk* gpu, resources* made)
 {
     hdrp_gpu_vk_env_destroy(gpu, &made->env);
+    hdrp_gpu_vk_tiles_destroy(gpu, &made->classified);
     hdrp_gpu_vk_cube_destroy(gpu, &made->cube);
     hdrp_gpu_vk_image_destroy(gpu, &made->shown);
     hdrp_gpu_vk_image_destroy(gpu, &made->sky);
@@ -392,6 +396,39 @@ static void whatever_the_driver_fails_at_is_reported_and_leaves_nothing(void** s
         assert_int_equal(driver.calls, at + 1);
         assert_int_equal(driver.live, 0);
     }
+}
+
+/* By themselves, because a driver takes its time for them. */
+static void variants_that_fail_leave_nothing(void** state)
+{
+    const uint32_t words[] = {HDRP_GPU_VK_WORD_LIT, HDRP_GPU_VK_WORD_LIT};
+    hdrp_gpu_vk_desc desc = failing_desc();
+    hdrp_gpu_vk_variants variants;
+    hdrp_gpu_vk gpu;
+    int live, calls = 9; /* image, memory, binding, two views, module and pipeline of both */
+    (void)state;
+    desc.passes = HDRP_GPU_VK_PASS_LIGHT;
+    assert_int_equal(hdrp_gpu_vk_init(&gpu, &desc), HDRP_OK);
+    live = driver.live;
+    driver.failure = VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    for (int at = 0; at < calls; ++at) {
+        driver.calls = 0;
+        driver.fail_at = at;
+        memset(&variants, 0x5a, sizeof variants);
+        assert_int_equal(hdrp_gpu_vk_variants_create(&gpu, words, 2, &variants),
+                         HDRP_ERROR_OUT_OF_DEVICE_MEMORY);
+        assert_int_equal(driver.calls, at + 1);
+        assert_int_equal(driver.live, live);
+        assert_int_equal(variants.count, 0x5a5a5a5a);
+    }
+    driver.calls = 0;
+    driver.fail_at = -1;
+    assert_int_equal(hdrp_gpu_vk_variants_create(&gpu, words, 2, &variants), HDRP_OK);
+    assert_int_equal(driver.calls, calls);
+    hdrp_gpu_vk_variants_destroy(&gpu, &variants);
+    assert_int_equal(driver.live, live);
+    hdrp_gpu_vk_destroy(&gpu);
+    assert_int_equal(driver.live, 0);
 }
 
 /* What each function says is passed on, whatever it is. */
@@ -660,6 +697,7 @@ int main(void)
         TEST(passes_that_are_not_asked_for_are_not_made),
         TEST(every_failure_has_its_name),
         TEST(whatever_the_driver_fails_at_is_reported_and_leaves_nothing),
+        TEST(variants_that_fail_leave_nothing),
         TEST(every_allocation_of_the_host_may_fail),
         TEST(memory_comes_from_the_caller),
         TEST(resources_out_of_range_are_refused),
