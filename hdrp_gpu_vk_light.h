@@ -31,7 +31,7 @@
 #include "hdrp_brdf.h"
 #include "hdrp_cull.h"
 #include "hdrp_env.h"
-#include "hdrp_gpu_vk_core.h"
+#include "hdrp_gpu_vk_cull.h"
 #include "hdrp_light.h"
 #include "hdrp_pack.h"
 #include "hdrp_shadow.h"
@@ -337,7 +337,7 @@ HDRP_API hdrp_result hdrp_gpu_vk_light_deferred(hdrp_gpu_vk* gpu, VkCommandBuffe
 #define HDRP_I_GPU_VK_LIGHT_IMPLEMENTED
 
 /* Its bodies too, where it was included before the macro was defined. */
-#include "hdrp_gpu_vk_core.h"
+#include "hdrp_gpu_vk_cull.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
-"""What the passes of hdrp_gpu_vk.h cost on AMD GPUs, without one: gcn_passes.py [PASS...]
+"""What the passes of hdrp_gpu_vk.h cost on AMD GPUs, without one:
 
-A table for each family of GPUs: registers, local memory (LDS) and occupancy of every embedded
-shader, and of deferred lighting in variants from simple to complex, with what each feature adds.
-The words come from the headers; see gcn_probe.py for the driver that compiles them. Exit status 77
-where something is missing.
+    gcn_passes.py [PASS...]   a table for each family of GPUs
+    gcn_passes.py --check     fails where a pass takes more registers than it may
+    gcn_passes.py --write     records the table in docs/gcn_passes.md
+
+Registers, local memory (LDS) and occupancy of every embedded shader, and of deferred lighting in
+variants from simple to complex, with what each feature adds. The words come from the headers; see
+gcn_probe.py for the driver that compiles them. Exit status 77 where something is missing.
 """
 import pathlib
 import re
@@ -15,10 +18,11 @@ import tempfile
 import gcn_probe
 import hdrp_api
 
-SHADER = re.compile(r"hdrp_i_gpu_vk_shader_make\((?P<arguments>[^;]*?)\);\s*"
-                    r"s\.words = hdrp_i_gpu_vk_spirv_(?P<name>\w+);")
 WORDS = re.compile(r"hdrp_i_gpu_vk_spirv_(?P<name>\w+)\[\] = \{(?P<words>[^}]*)\}")
-STRING = re.compile(r'"([^"]*)"')
+
+# Instructions and numbers of SPIR-V.
+OP_TYPE_IMAGE, OP_TYPE_SAMPLED_IMAGE, OP_TYPE_POINTER, OP_VARIABLE, OP_DECORATE = 25, 27, 32, 59, 71
+BINDING, STORAGE_BUFFER, UNIFORM_CONSTANT, STORAGE_IMAGE = 33, 12, 0, 2
 
 # Words of features, HDRP_GPU_VK_WORD_... of hdrp_gpu_vk_light.h.
 LIT, POINT, SPOT, PYRAMID, BOX = 1 << 25, 1 << 2, 1 << 3, 1 << 4, 1 << 5
@@ -52,20 +56,39 @@ VARIANTS = {
 class Embedded:
     """A shader of a header."""
 
-    def __init__(self, name, bindings, words):
-        self.name, self.bindings, self.words = name, bindings, words
+    def __init__(self, name, words):
+        self.name, self.words, self.bindings = name, words, bindings_of(words)
+
+
+def letter_of(pointer, types):
+    """As hdrp_i_gpu_vk_shader.bindings has them."""
+    storage, pointed = types[pointer][1:3]
+    if storage != UNIFORM_CONSTANT:
+        return "b" if storage == STORAGE_BUFFER else "u"
+    kind = types[pointed]
+    if kind[0] == OP_TYPE_SAMPLED_IMAGE:
+        return "c"
+    return "s" if kind[6] == STORAGE_IMAGE else "t"
+
+
+def bindings_of(words):
+    """A letter for each binding; what the shader does without is a buffer."""
+    types, numbers, letters = {}, {}, {}
+    for opcode, at, end in gcn_probe.instructions_of(words):
+        if opcode in (OP_TYPE_IMAGE, OP_TYPE_SAMPLED_IMAGE, OP_TYPE_POINTER):
+            types[words[at + 1]] = [opcode, *words[at + 2:end]]
+        elif opcode == OP_DECORATE and words[at + 2] == BINDING:
+            numbers[words[at + 1]] = words[at + 3]
+        elif opcode == OP_VARIABLE and words[at + 2] in numbers:
+            letters[numbers[words[at + 2]]] = letter_of(words[at + 1], types)
+    return "".join(letters.get(k, "b") for k in range(max(letters) + 1))
 
 
 def embedded_shaders():
-    shaders = []
     for path in sorted(hdrp_api.ROOT.glob("hdrp_gpu_vk*.h")):
-        text = path.read_text(encoding="utf-8")
-        arrays = {m["name"]: [int(word, 16) for word in m["words"].split(",") if word.strip()]
-                  for m in WORDS.finditer(text)}
-        for match in SHADER.finditer(text):
-            _, bindings = STRING.findall(match["arguments"])[:2]
-            shaders.append(Embedded(match["name"], bindings, arrays[match["name"]]))
-    return shaders
+        for match in WORDS.finditer(path.read_text(encoding="utf-8")):
+            words = [int(word, 16) for word in match["words"].split(",") if word.strip()]
+            yield Embedded(match["name"], words)
 
 
 class Compiled:
@@ -89,21 +112,75 @@ def compiled_shaders(folder, wanted):
             yield Compiled(f"{shader.name}:{name}", path, word, shader.bindings)
 
 
+SHOWN = {"instructions": "instructions", "vgprs": "VGPRs", "sgprs": "SGPRs",
+         "lds_bytes": "LDS, bytes", "waves_per_simd": "waves", "spilled_registers": "spilled"}
+# Vector registers on bonaire, at most. The aim for lists is 48 throughout.
+LIMITS = {"classify": 48, "dispatch": 48, "cull_project": 84, "cull_coarse": 48, "cull_tiles": 48,
+          "cull_pixels": 48, "cull_clusters": 68, "depth": 48, "deferred:punctual": 48,
+          "deferred:punctual+sun+mask+sky": 64}
+DOCUMENT = hdrp_api.ROOT / "docs" / "gcn_passes.md"
+INTRODUCTION = """# Registers of the GPU passes
+
+Written by `tools/gcn_passes.py --write`; {versions}. Deferred lighting is one module; each of its
+rows is a variant: `punctual` is the Standard material with points and spots, and what follows a +
+is a feature more. `sun` is directional lights, `mask` their shadow image, `sky` the environment.
+"""
+
+
+def measured_rows(bench, folder, wanted):
+    """family -> [(name, numbers)]"""
+    compiled = list(compiled_shaders(folder, wanted))
+    return {family: [(c.shader.name, measured[c.shader.name].numbers()) for c in compiled]
+            for family, measured in bench.ask_all(compiled).items()}
+
+
+def print_rows(rows):
+    for family, shaders in rows.items():
+        print(f"\n{family:<34}" + "".join(f"{head:>14}" for head in SHOWN.values()))
+        for name, numbers in shaders:
+            print(f"{name:<34}" + "".join(f"{numbers[column]:>14}" for column in SHOWN))
+
+
+def document(versions, rows):
+    lines = [INTRODUCTION.format(versions=versions)]
+    for family, shaders in rows.items():
+        plain = dict(shaders).get("deferred:punctual")
+        lines += [f"## {family}", "", f"| pass | {' | '.join(SHOWN.values())} | VGPRs added |",
+                  "|---|" + "---|" * (len(SHOWN) + 1)]
+        for name, numbers in shaders:
+            added = ""
+            if name.startswith("deferred:punctual+") and plain:
+                added = f"{numbers['vgprs'] - plain['vgprs']:+d}"
+            values = " | ".join(str(numbers[column]) for column in SHOWN)
+            lines.append(f"| {name} | {values} | {added} |")
+        lines.append("")
+    return "\n".join(lines)
+
+
+def too_many(rows):
+    """Passes that take more registers than they may."""
+    return [f"{name}: {numbers['vgprs']} vector registers on bonaire, at most {LIMITS[name]}"
+            for name, numbers in rows["bonaire"]
+            if name in LIMITS and numbers["vgprs"] > LIMITS[name]]
+
+
 def main():
-    shown = ["instructions", "vgprs", "sgprs", "lds_bytes", "waves_per_simd", "spilled_registers"]
+    wanted = [word for word in sys.argv[1:] if not word.startswith("--")]
     try:
         with tempfile.TemporaryDirectory() as folder:
             bench = gcn_probe.Bench(folder)
-            compiled = list(compiled_shaders(pathlib.Path(folder), sys.argv[1:]))
-            for family, measured in bench.ask_all(compiled).items():
-                print(f"\n{family:<34}" + "".join(f"{column.split('_')[0]:>13}" for column in shown))
-                for c in compiled:
-                    numbers = measured[c.shader.name].numbers()
-                    print(f"{c.shader.name:<34}" +
-                          "".join(f"{numbers[column]:>13}" for column in shown))
+            rows = measured_rows(bench, pathlib.Path(folder), wanted)
+            versions = bench.versions()
     except gcn_probe.Skip as missing:
         print(f"skipped: {missing}")
         return gcn_probe.SKIPPED
+    if "--write" in sys.argv:
+        DOCUMENT.write_text(document(versions, rows), encoding="utf-8")
+    if "--check" in sys.argv:
+        problems = too_many(rows)
+        print("\n".join(problems) if problems else "all passes keep within their registers")
+        return 1 if problems else 0
+    print_rows(rows)
     return 0
 
 

@@ -60,7 +60,8 @@ typedef struct scene_desc {
     uint32_t materials;   /* features of materials: mask */
     bool sky_only, plain; /* plain: no features, no kinds, no RT4, no environment */
     bool split, environment, harmonics, table, masked;
-    bool srgb; /* RT0 has the format that it is made for */
+    bool srgb;  /* RT0 has the format that it is made for */
+    bool atlas; /* of shadow maps with random depths */
 } scene_desc;
 
 typedef struct scene {
@@ -79,6 +80,9 @@ typedef struct scene {
     void *set_memory, *list_memory, *env_memory;
     hdrp_env env;
     hdrp_env_sh sh;
+    hdrp_shadow_view* views;
+    uint32_t view_count;
+    float* atlas; /* depths */
 } scene;
 
 static size_t pixels_of(const scene* s)
@@ -237,6 +241,36 @@ static void make_lists(scene* s)
     free(shapes);
 }
 
+#define MAP_PX   16u
+#define ATLAS_PX 512u
+
+/* Maps for the lights that want one, and casters at any depth. */
+static void make_atlas(scene* s)
+{
+    const hdrp_shadow_settings settings = hdrp_shadow_settings_make(HDRP_SHADOW_FILTER_TENT_3, 0u);
+    s->views = malloc((6u * s->desc.lights + 1u) * sizeof *s->views);
+    s->atlas = malloc(ATLAS_PX * ATLAS_PX * sizeof *s->atlas);
+    assert_true(s->views && s->atlas);
+    for (size_t i = 0; i < ATLAS_PX * ATLAS_PX; ++i) {
+        s->atlas[i] = between(0.9f, 1.0f);
+    }
+    for (uint32_t i = 0; i < s->desc.lights; ++i) {
+        uint32_t count = hdrp_shadow_map_count(s->lights[i]);
+        if (!(s->lights[i].bits.x & HDRP_LIGHT_FEATURE_SHADOW)) {
+            continue;
+        }
+        s->lights[i].bits.z = s->view_count;
+        s->lights[i].bits.x &= count > 0u ? ~0u : ~HDRP_LIGHT_FEATURE_SHADOW;
+        for (uint32_t face = 0; face < count; ++face) {
+            uint32_t k = s->view_count++, in_row = ATLAS_PX / MAP_PX;
+            hdrp_u32x4 map = hdrp_u32x4_make(k % in_row * MAP_PX, k / in_row * MAP_PX, MAP_PX, 0u);
+            assert_true(k < in_row * in_row);
+            s->views[k] = hdrp_shadow_view_light(s->lights[i], face, 0.1f, map, settings);
+        }
+    }
+    assert_true(s->view_count > 0u);
+}
+
 static void make_environment(scene* s)
 {
     enum { WIDTH = 32, HEIGHT = 16 };
@@ -292,6 +326,9 @@ static scene make_scene(const scene_desc* desc)
         s.lights[i] = hdrp_light_directional(any_direction(), any_color(5.0f), 0.01f);
         s.lights[i].bits.y = i % 2u ? HDRP_LIGHT_LAYERS_ALL : 15u;
     }
+    if (desc->atlas) {
+        make_atlas(&s);
+    }
     make_lists(&s);
     if (desc->environment) {
         make_environment(&s);
@@ -310,6 +347,8 @@ static void free_scene(scene* s)
     free(s->set_memory);
     free(s->list_memory);
     free(s->env_memory);
+    free(s->views);
+    free(s->atlas);
 }
 
 /* ---- the CPU --------------------------------------------------------------------------------- */
@@ -420,6 +459,12 @@ static cpu_pixel shade(const scene* s, uint32_t x, uint32_t y)
         if (!hdrp_light_affects(s->lights[i], e.light_layers)) {
             continue;
         }
+        if (s->desc.atlas && s->lights[i].bits.x & HDRP_LIGHT_FEATURE_SHADOW) {
+            const hdrp_shadow_atlas atlas = {s->atlas, ATLAS_PX, ATLAS_PX, 0};
+            const hdrp_shadow_view* view = &s->views[s->lights[i].bits.z];
+            view += hdrp_shadow_map_of_direction(*view, hdrp_v3_neg(in.l));
+            visible *= hdrp_shadow_visibility(&atlas, view, place, d.normal);
+        }
         visible *= hdrp_light_sign(s->lights[i]);
         lit = hdrp_brdf_lit_eval(d, hdrp_brdf_lit_view_widened(w, variance), in.l, d.features);
         out.diffuse = hdrp_v3_mad(out.diffuse, hdrp_v3_mul(in.illuminance, lit.diffuse), visible);
@@ -438,13 +483,22 @@ static cpu_pixel shade(const scene* s, uint32_t x, uint32_t y)
 /* ---- the device ------------------------------------------------------------------------------ */
 
 enum { IMAGE_RT0, IMAGE_DEPTH = 5, IMAGE_KINDS, IMAGE_OCCLUSION, IMAGE_SHADOW, IMAGES };
-enum { BUFFER_LIGHTS, BUFFER_TILES, BUFFER_CELLS, BUFFER_ENTRIES, BUFFER_MASKS, BUFFERS };
+enum {
+    BUFFER_LIGHTS,
+    BUFFER_TILES,
+    BUFFER_CELLS,
+    BUFFER_ENTRIES,
+    BUFFER_MASKS,
+    BUFFER_VIEWS,
+    BUFFER_ATLAS,
+    BUFFERS
+};
 
 typedef struct on_device {
     hdrp_gpu_vk_image images[IMAGES];
     hdrp_gpu_vk_buffer uploads[IMAGES], buffers[BUFFERS], params, cube_uploads[2];
     hdrp_gpu_vk_image cubes[2];
-    hdrp_gpu_vk_image fgd, color, diffuse;
+    hdrp_gpu_vk_image fgd, color, diffuse, atlas;
     hdrp_gpu_vk_lighting lighting;
     hdrp_gpu_vk_tiles tiles;
 } on_device;
@@ -568,6 +622,15 @@ static void make_buffers(const scene* s, on_device* o)
         o->buffers[BUFFER_MASKS] =
             filled_buffer(l->masks, entries * hdrp_cull_mask_words(l->grid) * sizeof *l->masks);
     }
+    if (s->desc.atlas) {
+        o->buffers[BUFFER_VIEWS] = filled_buffer(s->views, s->view_count * sizeof *s->views);
+        o->buffers[BUFFER_ATLAS] = filled_buffer(s->atlas, ATLAS_PX * ATLAS_PX * sizeof *s->atlas);
+        assert_int_equal(
+            hdrp_gpu_vk_image_create(&gpu, VK_FORMAT_R32_SFLOAT, ATLAS_PX, ATLAS_PX,
+                                     VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+                                     "atlas", &o->atlas),
+            HDRP_OK);
+    }
     assert_int_equal(hdrp_gpu_vk_buffer_create(
                          &gpu, HDRP_GPU_VK_LIGHTING_BYTES,
                          VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
@@ -606,6 +669,9 @@ static void set_lighting(const scene* s, on_device* o)
     l->first_masked = s->desc.lights;
     l->masked_count = 1;
     l->shadow_mask = s->desc.masked ? o->images[IMAGE_SHADOW].view : VK_NULL_HANDLE;
+    l->shadow_views.buffer = o->buffers[BUFFER_VIEWS].buffer;
+    l->shadow_view_count = s->view_count;
+    l->shadow_atlas = o->atlas.view;
     l->fgd = s->desc.table ? o->fgd.view : VK_NULL_HANDLE;
     l->fgd_size = FGD_SIZE;
     l->specular = o->cubes[0].view;
@@ -687,6 +753,7 @@ static void free_device(on_device* o)
     }
     hdrp_gpu_vk_buffer_destroy(&gpu, &o->params);
     hdrp_gpu_vk_image_destroy(&gpu, &o->fgd);
+    hdrp_gpu_vk_image_destroy(&gpu, &o->atlas);
     hdrp_gpu_vk_image_destroy(&gpu, &o->color);
     hdrp_gpu_vk_image_destroy(&gpu, &o->diffuse);
     hdrp_gpu_vk_tiles_destroy(&gpu, &o->tiles);
@@ -702,6 +769,9 @@ static VkCommandBuffer begin(const scene* s, const on_device* o)
     if (s->desc.environment) {
         upload_cube(commands, &s->env.specular, &o->cubes[0], &o->cube_uploads[0]);
         upload_cube(commands, &s->env.irradiance, &o->cubes[1], &o->cube_uploads[1]);
+    }
+    if (s->desc.atlas) {
+        gpu_upload(commands, &o->buffers[BUFFER_ATLAS], &o->atlas, VK_IMAGE_ASPECT_COLOR_BIT);
     }
     if (s->desc.table) {
         assert_int_equal(hdrp_gpu_vk_fgd_bake(&gpu, commands, &o->fgd), HDRP_OK);
@@ -971,6 +1041,8 @@ static void pixels_are_lit_as_on_the_cpu(void** state)
           .list_flags = HDRP_CULL_PIXELS | HDRP_CULL_MASKS}},
         {"slices",
          {.width = 64, .height = 48, .tile = 32, .lights = 100, .materials = 31u, .slices = 16}},
+        {"shadows",
+         {.width = 64, .height = 40, .tile = 16, .lights = 200, .materials = 16u, .atlas = true}},
         {"sky", {.width = 40, .height = 30, .tile = 16, .lights = 5, .sky_only = true}},
     };
     hdrp_gpu_vk_variants variants = make_variants(words, 2);
