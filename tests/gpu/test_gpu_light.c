@@ -413,7 +413,7 @@ static cpu_pixel shade(const scene* s, uint32_t x, uint32_t y)
     out.features = d.features;
     for (uint32_t i = 0; i < s->desc.lights + s->desc.directional; ++i) {
         hdrp_light_incident in = hdrp_light_eval(s->lights[i], place);
-        float variance = hdrp_light_variance(hdrp_light_sine(s->lights[i], in));
+        float variance = hdrp_light_variance(s->lights[i], in);
         float visible =
             s->desc.masked && i == s->desc.lights ? (float)s->shadow[at] / 255.0f : 1.0f;
         hdrp_brdf_lit lit;
@@ -738,8 +738,8 @@ static void expect_words(hdrp_gpu_vk_buffer* back, const uint32_t* expected, siz
 }
 
 /* Against the functions of the CPU, for variants that need no pipelines. */
-static void expect_classified(const scene_desc* desc, const uint32_t* masks, uint32_t count,
-                              uint32_t* uncovered)
+static void expect_classified(const scene_desc* desc, const hdrp_gpu_vk_variants* stand_ins,
+                              const uint32_t* masks, uint32_t count, uint32_t* uncovered)
 {
     scene s = make_scene(desc);
     on_device o = to_device(&s);
@@ -751,7 +751,7 @@ static void expect_classified(const scene_desc* desc, const uint32_t* masks, uin
     hdrp_cull_arguments arguments[HDRP_CULL_VARIANT_MAX];
     hdrp_cull_variant_list variants = {masks, NULL, count};
     hdrp_cull_dispatch dispatch = {arguments, list, count, tiles, 0, 0, 0, 0};
-    hdrp_gpu_vk_variants made = make_variants(masks, 1); /* for its stand-ins */
+    hdrp_gpu_vk_variants made = *stand_ins;
     hdrp_gpu_vk_buffer back[4];
     VkCommandBuffer commands;
     uint32_t results[4];
@@ -784,8 +784,6 @@ static void expect_classified(const scene_desc* desc, const uint32_t* masks, uin
     assert_int_equal(results[3], 0);
     expect_words(&back[3], (const uint32_t*)arguments, 4u * count);
     *uncovered = dispatch.uncovered;
-    made.count = 1u;
-    hdrp_gpu_vk_variants_destroy(&gpu, &made);
     free_device(&o);
     free_scene(&s);
     free(words);
@@ -811,21 +809,23 @@ static void tiles_are_classified_as_on_the_cpu(void** state)
         {.width = 640, .height = 500, .tile = 8, .lights = 30, .materials = 31u}, /* many tiles */
     };
     uint32_t masks[HDRP_CULL_VARIANT_MAX];
-    uint32_t uncovered = 0, all_uncovered = 0;
+    uint32_t uncovered = 0, all_uncovered = 0, none = HDRP_GPU_VK_WORD_LIT;
+    hdrp_gpu_vk_variants made = make_variants(&none, 1);
     (void)state;
     for (uint32_t i = 0; i < HDRP_CULL_VARIANT_MAX; ++i) {
         uint32_t lights = i % 4u == 0u ? 0u : i % 4u == 1u ? 0xcu : HDRP_GPU_VK_WORD_LIGHTS;
         masks[i] = FRAME | lights | OF(i >> 1);
     }
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; ++i) {
-        expect_classified(&sizes[i], masks, HDRP_CULL_VARIANT_MAX, &uncovered);
+        expect_classified(&sizes[i], &made, masks, HDRP_CULL_VARIANT_MAX, &uncovered);
         all_uncovered += uncovered;
         masks[7] = HDRP_GPU_VK_WORD_ALL;
-        expect_classified(&sizes[i], masks, 8, &uncovered);
+        expect_classified(&sizes[i], &made, masks, 8, &uncovered);
         assert_int_equal(uncovered, 0);
         masks[7] = masks[0] = FRAME;
     }
     assert_true(all_uncovered > 0);
+    hdrp_gpu_vk_variants_destroy(&gpu, &made);
 }
 
 /* ---- deferred lighting ----------------------------------------------------------------------- */
@@ -981,6 +981,195 @@ static void pixels_are_lit_as_on_the_cpu(void** state)
     hdrp_gpu_vk_variants_destroy(&gpu, &variants);
 }
 
+/* Light that is written apart, and what is left, make what is written together. */
+static void parts_sum_up(void** state)
+{
+    const uint32_t words[] = {HDRP_GPU_VK_WORD_ALL};
+    scene_desc desc = {.width = 120,
+                       .height = 28,
+                       .tile = 16,
+                       .lights = 20,
+                       .directional = 1,
+                       .materials = 19u,
+                       .environment = true,
+                       .harmonics = true,
+                       .srgb = true};
+    hdrp_gpu_vk_variants variants = make_variants(words, 1);
+    scene s = make_scene(&desc);
+    hdrp_v4 *whole = light(&s, &variants), *parts;
+    size_t apart = 0;
+    (void)state;
+    s.desc.split = true;
+    parts = light(&s, &variants);
+    for (size_t i = 0; i < pixels_of(&s); ++i) {
+        hdrp_v4 below = parts[pixels_of(&s) + i];
+        hdrp_v3 sum = hdrp_v3_from_v4(parts[i]), expected = hdrp_v3_from_v4(whole[i]);
+        if (below.w == 1.0f) {
+            sum = hdrp_v3_add(sum, hdrp_v3_from_v4(below));
+            ++apart;
+        } else {
+            expect_untouched(below);
+        }
+        assert_true(hdrp_v3_length(hdrp_v3_sub(sum, expected)) <=
+                    1e-5f * (hdrp_v3_length(expected) + 1.0f));
+        expect_untouched(whole[pixels_of(&s) + i]);
+    }
+    assert_true(apart > 100);
+    free(whole);
+    free(parts);
+    free_scene(&s);
+    hdrp_gpu_vk_variants_destroy(&gpu, &variants);
+}
+
+static void expect_refused(const on_device* o, const hdrp_gpu_vk_variants* v,
+                           const hdrp_gpu_vk_lighting* lighting, hdrp_result expected)
+{
+    const hdrp_gpu_vk_lit lit = {o->color.view, VK_NULL_HANDLE};
+    assert_int_equal(hdrp_gpu_vk_classify(&gpu, device.commands, lighting, v, &o->tiles), expected);
+    assert_int_equal(
+        hdrp_gpu_vk_light_deferred(&gpu, device.commands, lighting, v, &o->tiles, &lit), expected);
+}
+
+static void expect_missing_pointers_are_refused(const on_device* o, const hdrp_gpu_vk_variants* v)
+{
+    const hdrp_gpu_vk_lit lit = {o->color.view, VK_NULL_HANDLE}, none = {0};
+    const hdrp_gpu_vk_lighting* l = &o->lighting;
+    VkCommandBuffer c = device.commands;
+    hdrp_gpu_vk_lighting split = o->lighting;
+    split.split = 1u;
+    assert_int_equal(hdrp_gpu_vk_write_lighting(NULL, c, l), HDRP_ERROR_NULL_POINTER);
+    assert_int_equal(hdrp_gpu_vk_write_lighting(&gpu, NULL, l), HDRP_ERROR_NULL_POINTER);
+    assert_int_equal(hdrp_gpu_vk_write_lighting(&gpu, c, NULL), HDRP_ERROR_NULL_POINTER);
+    assert_int_equal(hdrp_gpu_vk_classify(NULL, c, l, v, &o->tiles), HDRP_ERROR_NULL_POINTER);
+    assert_int_equal(hdrp_gpu_vk_classify(&gpu, NULL, l, v, &o->tiles), HDRP_ERROR_NULL_POINTER);
+    assert_int_equal(hdrp_gpu_vk_classify(&gpu, c, NULL, v, &o->tiles), HDRP_ERROR_NULL_POINTER);
+    assert_int_equal(hdrp_gpu_vk_classify(&gpu, c, l, NULL, &o->tiles), HDRP_ERROR_NULL_POINTER);
+    assert_int_equal(hdrp_gpu_vk_classify(&gpu, c, l, v, NULL), HDRP_ERROR_NULL_POINTER);
+    assert_int_equal(hdrp_gpu_vk_light_deferred(&gpu, c, l, v, &o->tiles, NULL),
+                     HDRP_ERROR_NULL_POINTER);
+    assert_int_equal(hdrp_gpu_vk_light_deferred(&gpu, c, l, v, &o->tiles, &none),
+                     HDRP_ERROR_NULL_POINTER);
+    assert_int_equal(hdrp_gpu_vk_light_deferred(&gpu, c, &split, v, &o->tiles, &lit),
+                     HDRP_ERROR_NULL_POINTER);
+}
+
+/* Each in turn, with one member that is not what it should be. */
+static void expect_bad_members_are_refused(const on_device* o, const hdrp_gpu_vk_variants* v)
+{
+#define REFUSED(change, expected)                                                                  \
+    bad = o->lighting;                                                                             \
+    bad.change;                                                                                    \
+    expect_refused(o, v, &bad, expected)
+    hdrp_gpu_vk_lighting bad;
+    REFUSED(params = VK_NULL_HANDLE, HDRP_ERROR_NULL_POINTER);
+    REFUSED(depth = VK_NULL_HANDLE, HDRP_ERROR_NULL_POINTER);
+    REFUSED(rt[0] = VK_NULL_HANDLE, HDRP_ERROR_NULL_POINTER);
+    REFUSED(rt[3] = VK_NULL_HANDLE, HDRP_ERROR_NULL_POINTER);
+    REFUSED(lights.buffer = VK_NULL_HANDLE, HDRP_ERROR_NULL_POINTER);
+    REFUSED(cells.buffer = VK_NULL_HANDLE, HDRP_ERROR_NULL_POINTER);
+    REFUSED(entries.buffer = VK_NULL_HANDLE, HDRP_ERROR_NULL_POINTER);
+    REFUSED(tiles.buffer = VK_NULL_HANDLE, HDRP_ERROR_NULL_POINTER);
+    REFUSED(list_flags = HDRP_CULL_MASKS, HDRP_ERROR_NULL_POINTER);
+    REFUSED(width_px = 0, HDRP_ERROR_BAD_ARGUMENT);
+    REFUSED(width_px = 33, HDRP_ERROR_BAD_ARGUMENT);
+    REFUSED(height_px = 16385, HDRP_ERROR_BAD_ARGUMENT);
+    REFUSED(grid.tiles.x = 0, HDRP_ERROR_BAD_ARGUMENT);
+    REFUSED(grid.cells.x = 0, HDRP_ERROR_BAD_ARGUMENT);
+    REFUSED(grid.cells.y = 0, HDRP_ERROR_BAD_ARGUMENT);
+    REFUSED(light_count = 0, HDRP_ERROR_BAD_ARGUMENT);
+    REFUSED(first_directional = 100, HDRP_ERROR_BAD_ARGUMENT);
+    REFUSED(directional_count = 100, HDRP_ERROR_BAD_ARGUMENT);
+    REFUSED(masked_count = 5, HDRP_ERROR_BAD_ARGUMENT);
+    REFUSED(exposure = -1.0f, HDRP_ERROR_BAD_ARGUMENT);
+    REFUSED(exposure = NAN, HDRP_ERROR_BAD_ARGUMENT);
+    REFUSED(exposure = INFINITY, HDRP_ERROR_BAD_ARGUMENT);
+    REFUSED(params_offset = 16, HDRP_ERROR_BAD_ARGUMENT);
+    REFUSED(lights.offset = 1, HDRP_ERROR_BAD_ARGUMENT);
+    bad = o->lighting;
+    bad.fgd = o->color.view;
+    bad.fgd_size = 1u;
+    expect_refused(o, v, &bad, HDRP_ERROR_BAD_ARGUMENT);
+    assert_int_equal(hdrp_gpu_vk_write_lighting(&gpu, device.commands, &bad),
+                     HDRP_ERROR_BAD_ARGUMENT);
+    bad = o->lighting;
+    bad.grid.cells.x = HDRP_CULL_SLICES_MAX;
+    bad.grid.cells.y = 0xffffffffu;
+    expect_refused(o, v, &bad, HDRP_ERROR_TOO_LARGE);
+#undef REFUSED
+}
+
+static void what_cannot_be_lit_is_refused(void** state)
+{
+    const scene_desc desc = {.width = 32, .height = 16, .tile = 16, .lights = 2, .plain = true};
+    const uint32_t words[] = {HDRP_GPU_VK_WORD_LIT, HDRP_GPU_VK_WORD_LIT};
+    hdrp_gpu_vk_variants v = make_variants(words, 2), other;
+    hdrp_gpu_vk_tiles tiles;
+    hdrp_cull_grid grid;
+    scene s = make_scene(&desc);
+    on_device o = to_device(&s);
+    (void)state;
+    assert_int_equal(hdrp_gpu_vk_begin_frame(&gpu, 0), HDRP_OK);
+    gpu_begin(&device);
+    expect_missing_pointers_are_refused(&o, &v);
+    expect_bad_members_are_refused(&o, &v);
+    assert_int_equal(gpu.passes_recorded, 0);
+    gpu_run(&device);
+    assert_int_equal(hdrp_gpu_vk_variants_create(NULL, words, 1, &other), HDRP_ERROR_NULL_POINTER);
+    assert_int_equal(hdrp_gpu_vk_variants_create(&gpu, NULL, 1, &other), HDRP_ERROR_NULL_POINTER);
+    assert_int_equal(hdrp_gpu_vk_variants_create(&gpu, words, 1, NULL), HDRP_ERROR_NULL_POINTER);
+    assert_int_equal(hdrp_gpu_vk_variants_create(&gpu, words, 0, &other), HDRP_ERROR_BAD_ARGUMENT);
+    assert_int_equal(hdrp_gpu_vk_variants_create(&gpu, words, 65, &other), HDRP_ERROR_BAD_ARGUMENT);
+    grid = s.lists.grid;
+    grid.tiles.w = 0;
+    assert_int_equal(hdrp_gpu_vk_tiles_create(&gpu, grid, &tiles), HDRP_ERROR_BAD_ARGUMENT);
+    assert_int_equal(hdrp_gpu_vk_tiles_create(NULL, grid, &tiles), HDRP_ERROR_NULL_POINTER);
+    assert_int_equal(hdrp_gpu_vk_tiles_create(&gpu, grid, NULL), HDRP_ERROR_NULL_POINTER);
+    hdrp_gpu_vk_variants_destroy(&gpu, NULL);
+    hdrp_gpu_vk_tiles_destroy(&gpu, NULL);
+    free_device(&o);
+    free_scene(&s);
+    hdrp_gpu_vk_variants_destroy(&gpu, &v);
+    assert_int_equal(v.count, 0);
+    hdrp_gpu_vk_variants_destroy(&gpu, &v);
+}
+
+/* A context without the pass has no variants, and records nothing. */
+static void a_pass_that_was_not_asked_for_is_refused(void** state)
+{
+    hdrp_gpu_vk_desc desc = gpu_desc(&device);
+    const uint32_t word = HDRP_GPU_VK_WORD_LIT;
+    hdrp_gpu_vk_variants v;
+    hdrp_gpu_vk other;
+    (void)state;
+    desc.passes = HDRP_GPU_VK_PASS_DEPTH;
+    assert_int_equal(hdrp_gpu_vk_init(&other, &desc), HDRP_OK);
+    assert_int_equal(hdrp_gpu_vk_variants_create(&other, &word, 1, &v), HDRP_ERROR_UNSUPPORTED);
+    hdrp_gpu_vk_destroy(&other);
+}
+
+static void words_say_what_is_needed(void** state)
+{
+    hdrp_light lamp = hdrp_light_point(hdrp_v3_splat(0.0f), hdrp_v3_splat(1.0f), 5.0f);
+    uint32_t shape;
+    (void)state;
+    lamp.bits.x |= HDRP_LIGHT_FEATURE_SHADOW | HDRP_LIGHT_FEATURE_COOKIE;
+    shape = hdrp_cull_shape_from_light(lamp).bits.z;
+    assert_int_equal(hdrp_gpu_vk_word_of_light(lamp.bits.x), shape & HDRP_GPU_VK_WORD_ALL);
+    assert_int_equal(hdrp_gpu_vk_word_of_light(HDRP_LIGHT_TYPE_SPHERE), 0);
+    assert_int_equal(hdrp_gpu_vk_word_of_light(HDRP_LIGHT_FEATURE_SHADOW), 0);
+    assert_int_equal(hdrp_gpu_vk_word_of_light(18u), 0);
+    assert_int_equal(hdrp_gpu_vk_word_of_material(0, HDRP_GPU_VK_WORD_SPLIT), HDRP_GPU_VK_WORD_LIT);
+    assert_int_equal(hdrp_gpu_vk_word_of_material(1, HDRP_GPU_VK_WORD_SPLIT),
+                     HDRP_GPU_VK_WORD_LIT | HDRP_GPU_VK_WORD_SPLIT | OF(1));
+    assert_int_equal(hdrp_gpu_vk_word_of_tile(0, 4, 0xffffffffu), 0);
+    assert_int_equal(hdrp_gpu_vk_word_of_tile(HDRP_GPU_VK_WORD_LIT, HDRP_GPU_VK_WORD_SHADOW | 4u,
+                                              HDRP_GPU_VK_WORD_SPLIT),
+                     HDRP_GPU_VK_WORD_LIT | 4u);
+    assert_int_equal(hdrp_gpu_vk_word_of_tile(HDRP_GPU_VK_WORD_LIT, HDRP_GPU_VK_WORD_SHADOW | 4u,
+                                              HDRP_GPU_VK_WORD_SHADOW),
+                     HDRP_GPU_VK_WORD_LIT | HDRP_GPU_VK_WORD_SHADOW | 4u);
+}
+
 static int set_up(void** state)
 {
     const hdrp_gpu_vk_desc desc = gpu_desc(&device);
@@ -1001,6 +1190,10 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(tiles_are_classified_as_on_the_cpu, set_up, tear_down),
         cmocka_unit_test_setup_teardown(pixels_are_lit_as_on_the_cpu, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(parts_sum_up, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(what_cannot_be_lit_is_refused, set_up, tear_down),
+        cmocka_unit_test(a_pass_that_was_not_asked_for_is_refused),
+        cmocka_unit_test(words_say_what_is_needed),
     };
     int failed;
     if (!gpu_open(&device)) {
