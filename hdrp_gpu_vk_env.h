@@ -606,6 +606,9 @@ HDRP_API hdrp_result hdrp_gpu_vk_env_prefilter(hdrp_gpu_vk* gpu, VkCommandBuffer
     if (first_face > 6u * levels || face_count > 6u * levels - first_face) {
         return HDRP_ERROR_BAD_ARGUMENT;
     }
+    if (face_count == 0u) {
+        return HDRP_OK;
+    }
     r = hdrp_i_gpu_vk_room(gpu, (end + 5u) / 6u - first_face / 6u);
     for (level = first_face / 6u; 6u * level < end && r == HDRP_OK; ++level) {
         uint32_t first = first_face > 6u * level ? first_face - 6u * level : 0u;
