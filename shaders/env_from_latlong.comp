@@ -124,8 +124,9 @@ void main()
     bool pole = face / 2u == 1u;
     vec4 range = pole ? range_of_pole(face, s, t, float(w), float(h))
                       : range_of_side(face, s, t, float(w), float(h));
-    ivec4 r = ivec4(floor(range.x) - 1.0, floor(range.y) + 2.0, max(floor(range.z) - 1.0, 0.0),
-                    min(floor(range.w) + 2.0, float(h)));
+    // Rounding moves an end by less than a hundredth of a texel of the largest image.
+    ivec4 r = ivec4(floor(range.x - 0.02), ceil(range.y + 0.02), max(floor(range.z - 0.02), 0.0),
+                    min(ceil(range.w + 0.02), float(h)));
     if (pole && cube.x == 1u) {
         r.xy = ivec2(0, w);
     }

@@ -485,6 +485,7 @@ static void no_step_depends_on_the_split(void** state)
     }
     assert_int_equal(hdrp_gpu_vk_env_project_sh(&gpu, commands, &split), HDRP_OK);
     assert_int_equal(hdrp_gpu_vk_env_prefilter(&gpu, commands, &split, 6 * levels, 0), HDRP_OK);
+    assert_int_equal(hdrp_gpu_vk_env_prefilter(&gpu, commands, &split, 3, 0), HDRP_OK);
     parts = read_env(commands, &split);
     gpu_run(&device);
     assert_memory_equal(gpu_map(&device, &whole.specular), gpu_map(&device, &parts.specular),

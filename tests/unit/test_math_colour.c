@@ -215,6 +215,8 @@ static void codes_are_whole_and_keep_the_mean_when_dithered(void** state)
             assert_true(fabs(sum / 4096.0 - (double)x * 255.0) < 0.05);
         }
     }
+    assert_true(hdrp_dithered(10.4998f / 255.0f, 255.0f, 0.0f) == 10.0f / 255.0f);
+    assert_true(hdrp_dithered(10.5002f / 255.0f, 255.0f, 0.0f) == 11.0f / 255.0f);
     for (float noise = -1.0f; noise <= 1.0f; noise += 0.25f) {
         assert_true(hdrp_dithered(0.0f, 255.0f, noise) == 0.0f);
         assert_true(hdrp_dithered(1.0f, 255.0f, noise) == 1.0f);
