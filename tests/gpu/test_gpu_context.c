@@ -305,15 +305,11 @@ typedef struct resources {
     hdrp_gpu_vk_image table, sky, shown;
     hdrp_gpu_vk_cube cube;
     hdrp_gpu_vk_env env;
-<<<<<<< HEAD
     hdrp_gpu_vk_lists lists;
     hdrp_gpu_vk_variants variants;
     hdrp_gpu_vk_tiles tiles;
     hdrp_gpu_vk_buffer params, views;
     hdrp_gpu_vk_image lit, visibility;
-=======
-    hdrp_gpu_vk_tiles classified;
->>>>>>> light
 } resources;
 
 /* What lighting and shadows need besides. */
@@ -348,7 +344,6 @@ static hdrp_result make_resources(const hdrp_gpu_vk* gpu, resources* made)
     hdrp_cull_desc cull = {0};
     const VkFormat format = VK_FORMAT_R32G32B32A32_SFLOAT;
     const VkImageUsageFlags both = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
-    const hdrp_cull_grid grid = {.tiles = {16, 16, 2, 1}};
     hdrp_result r =
         hdrp_gpu_vk_buffer_create(gpu, 4096, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
                                   VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, "shapes", &made->shapes);
@@ -360,17 +355,12 @@ static hdrp_result make_resources(const hdrp_gpu_vk* gpu, resources* made)
                                                 &made->shown)
                      : r;
     r = r == HDRP_OK ? hdrp_gpu_vk_cube_create(gpu, format, 8, 4, both, "cube", &made->cube) : r;
-<<<<<<< HEAD
     r = r == HDRP_OK ? hdrp_gpu_vk_env_create(gpu, &small, format, &made->env) : r;
     cull.width_px = cull.height_px = 8;
     cull.slice_count = 1;
     cull.flags = HDRP_CULL_MASKS;
     r = r == HDRP_OK ? hdrp_gpu_vk_lists_create(gpu, &cull, &made->lists) : r;
     return r == HDRP_OK ? make_lighting(gpu, made) : r;
-=======
-    r = r == HDRP_OK ? hdrp_gpu_vk_tiles_create(gpu, grid, &made->classified) : r;
-    return r == HDRP_OK ? hdrp_gpu_vk_env_create(gpu, &small, format, &made->env) : r;
->>>>>>> light
 }
 
 static void destroy_resources(const hdrp_gpu_vk* gpu, resources* made)
@@ -383,7 +373,6 @@ static void destroy_resources(const hdrp_gpu_vk* gpu, resources* made)
     hdrp_gpu_vk_variants_destroy(gpu, &made->variants);
     hdrp_gpu_vk_lists_destroy(gpu, &made->lists);
     hdrp_gpu_vk_env_destroy(gpu, &made->env);
-    hdrp_gpu_vk_tiles_destroy(gpu, &made->classified);
     hdrp_gpu_vk_cube_destroy(gpu, &made->cube);
     hdrp_gpu_vk_image_destroy(gpu, &made->shown);
     hdrp_gpu_vk_image_destroy(gpu, &made->sky);
@@ -526,59 +515,7 @@ static void no_resource_and_no_frame_that_fails_leaves_anything(void** state)
         driver.fail_at = at;
         assert_int_equal(use(&gpu), failures[i].meant);
         assert_int_equal(driver.calls, at + 1);
-<<<<<<< HEAD
         assert_int_equal(driver.live, before);
-=======
-        assert_int_equal(driver.live, 0);
-    }
-}
-
-/* By themselves, because a driver takes its time for them. */
-static void variants_that_fail_leave_nothing(void** state)
-{
-    const uint32_t words[] = {HDRP_GPU_VK_WORD_LIT, HDRP_GPU_VK_WORD_LIT};
-    hdrp_gpu_vk_desc desc = failing_desc();
-    hdrp_gpu_vk_variants variants;
-    hdrp_gpu_vk gpu;
-    int live, calls = 9; /* image, memory, binding, two views, module and pipeline of both */
-    (void)state;
-    desc.passes = HDRP_GPU_VK_PASS_LIGHT;
-    assert_int_equal(hdrp_gpu_vk_init(&gpu, &desc), HDRP_OK);
-    live = driver.live;
-    driver.failure = VK_ERROR_OUT_OF_DEVICE_MEMORY;
-    for (int at = 0; at < calls; ++at) {
-        driver.calls = 0;
-        driver.fail_at = at;
-        memset(&variants, 0x5a, sizeof variants);
-        assert_int_equal(hdrp_gpu_vk_variants_create(&gpu, words, 2, &variants),
-                         HDRP_ERROR_OUT_OF_DEVICE_MEMORY);
-        assert_int_equal(driver.calls, at + 1);
-        assert_int_equal(driver.live, live);
-        assert_int_equal(variants.count, 0x5a5a5a5a);
-    }
-    driver.calls = 0;
-    driver.fail_at = -1;
-    assert_int_equal(hdrp_gpu_vk_variants_create(&gpu, words, 2, &variants), HDRP_OK);
-    assert_int_equal(driver.calls, calls);
-    hdrp_gpu_vk_variants_destroy(&gpu, &variants);
-    assert_int_equal(driver.live, live);
-    hdrp_gpu_vk_destroy(&gpu);
-    assert_int_equal(driver.live, 0);
-}
-
-/* What each function says is passed on, whatever it is. */
-static void every_failure_has_its_name(void** state)
-{
-    const hdrp_gpu_vk_desc desc = failing_desc();
-    (void)state;
-    for (size_t i = 0; i < sizeof failures / sizeof failures[0]; ++i) {
-        for (int at = 0; at < 8; ++at) { /* a sampler aside, one of each for the first shader */
-            driver.failure = failures[i].said;
-            driver.calls = 0;
-            driver.fail_at = at;
-            assert_int_equal(use_everything(&desc), failures[i].meant);
-        }
->>>>>>> light
     }
     hdrp_gpu_vk_destroy(&gpu);
 }
@@ -860,14 +797,8 @@ int main(void)
         TEST(what_is_missing_has_a_name),
         TEST(descs_out_of_range_are_refused),
         TEST(passes_that_are_not_asked_for_are_not_made),
-<<<<<<< HEAD
         TEST(no_context_that_fails_leaves_anything),
         TEST(no_resource_and_no_frame_that_fails_leaves_anything),
-=======
-        TEST(every_failure_has_its_name),
-        TEST(whatever_the_driver_fails_at_is_reported_and_leaves_nothing),
-        TEST(variants_that_fail_leave_nothing),
->>>>>>> light
         TEST(every_allocation_of_the_host_may_fail),
         TEST(memory_comes_from_the_caller),
         TEST(resources_out_of_range_are_refused),
