@@ -186,7 +186,7 @@ static void hdrp_i_gpu_vk_check(hdrp_gpu_vk_functions* vk, const hdrp_gpu_vk_des
     hdrp_i_gpu_vk_need(missing, properties.apiVersion >= VK_API_VERSION_1_1, "Vulkan 1.1");
     hdrp_i_gpu_vk_need(missing, (hdrp_i_gpu_vk_queue_flags(vk, desc) & VK_QUEUE_COMPUTE_BIT) != 0u,
                        "VK_QUEUE_COMPUTE_BIT in the queue family");
-    if (passes & HDRP_GPU_VK_PASS_LISTS) {
+    if (passes & (HDRP_GPU_VK_PASS_LISTS | HDRP_GPU_VK_PASS_BLOCKERS)) {
         hdrp_i_gpu_vk_need(missing,
                            properties.limits.maxPerStageDescriptorStorageBuffers >=
                                HDRP_I_GPU_VK_LIST_BUFFERS,

@@ -30,11 +30,12 @@ extern "C" {
 #define HDRP_GPU_VK_PASS_FGD         1u
 #define HDRP_GPU_VK_PASS_DEPTH       2u
 #define HDRP_GPU_VK_PASS_LISTS       4u /* with depth */
+#define HDRP_GPU_VK_PASS_BLOCKERS    8u
 #define HDRP_GPU_VK_PASS_LIGHT       32u
 #define HDRP_GPU_VK_PASS_SHADOW      64u
 #define HDRP_GPU_VK_PASS_ENVIRONMENT 128u
 #define HDRP_GPU_VK_PASS_TONE_MAP    256u
-#define HDRP_GPU_VK_PASS_ALL         487u
+#define HDRP_GPU_VK_PASS_ALL         495u
 
 /* Room for the compute shaders of all passes. */
 #define HDRP_GPU_VK_SHADERS_MAX 32u
@@ -279,6 +280,7 @@ extern "C" {
 #define HDRP_I_GPU_VK_CULL_TILES       4u
 #define HDRP_I_GPU_VK_CULL_PIXELS      5u
 #define HDRP_I_GPU_VK_CULL_CLUSTERS    6u
+#define HDRP_I_GPU_VK_CULL_BLOCKERS    7u
 #define HDRP_I_GPU_VK_CLASSIFY         16u
 #define HDRP_I_GPU_VK_DISPATCH         17u
 #define HDRP_I_GPU_VK_DEFERRED         18u

@@ -185,7 +185,8 @@ HDRP_FN hdrp_u32 hdrp_shadow_border_px(hdrp_u32 filter_kind)
 }
 
 /* Weights of up to six texels in a row: of the texels at base, base + 2 and base + 4 from the one
- * whose centre is last at or before the position, and of those behind each. */
+ * whose centre is last at or before the position, and of those behind each. Made by
+ * hdrp_shadow_weights_make. */
 struct hdrp_shadow_weights {
     hdrp_v3 even; /* [0,1] */
     hdrp_v3 odd;  /* [0,1] */
@@ -253,9 +254,9 @@ HDRP_FN hdrp_shadow_taps hdrp_shadow_taps_make(hdrp_shadow_weights weights)
     hdrp_shadow_taps t;
     hdrp_v3 w = hdrp_v3_add(weights.even, weights.odd);
     t.weight = hdrp_v3_make(hdrp_min(w.x, 1.0f), hdrp_min(w.y, 1.0f), hdrp_min(w.z, 1.0f));
-    t.place = hdrp_v3_make(weights.base + weights.odd.x / hdrp_max(w.x, HDRP_FLT_MIN),
-                           weights.base + 2.0f + weights.odd.y / hdrp_max(w.y, HDRP_FLT_MIN),
-                           weights.base + 4.0f + weights.odd.z / hdrp_max(w.z, HDRP_FLT_MIN));
+    t.place = hdrp_v3_make(weights.base + weights.odd.x / hdrp_max(w.x, 1e-4f),
+                           weights.base + 2.0f + weights.odd.y / hdrp_max(w.y, 1e-4f),
+                           weights.base + 4.0f + weights.odd.z / hdrp_max(w.z, 1e-4f));
     return t;
 }
 

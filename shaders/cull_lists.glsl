@@ -5,6 +5,7 @@
 #include "hdrp_cull_tile.h"
 
 #define GROUP         64
+#define GROUPS_ACROSS 65535 // in a row of a dispatch of many threads
 #define PLANES_STRIDE 12
 #define FLAG_FAST     1u
 #define FLAG_BLOCKS   8u
@@ -32,9 +33,19 @@ struct Seen
 };
 
 layout(std430, binding = 0) FRAME_ACCESS buffer FrameData { Frame frame; };
+#ifndef NO_SHAPES
 layout(std430, binding = 1) SHAPE_ACCESS buffer SeenShapes { Seen seen_shapes[]; };
 layout(std430, binding = 2) SHAPE_ACCESS buffer Planes { vec4 planes[]; };
 layout(std430, binding = 3) SHAPE_ACCESS buffer Shapes { hdrp_cull_shape shapes[]; };
+#endif
+
+#ifdef PROJECTS
+// Of a thread among all.
+uint thread_index()
+{
+    return gl_WorkGroupID.y * (GROUPS_ACROSS * GROUP) + gl_GlobalInvocationID.x;
+}
+#endif
 
 uint category_of(Seen s)
 {

@@ -19,8 +19,13 @@
 #define LIGHTS_MAX       4000u
 #define SIDE_MAX         400u
 
+/* Of what is read back: a pixel, the cells of a tile and its entries. */
+#define CELLS_AT   64u
+#define ENTRIES_AT 2048u
+#define BACK_BYTES 65536u
+
 static gpu_device device;
-static uint32_t frame_count = 48; /* in the test suite */
+static uint32_t frame_count = 40; /* in the test suite */
 
 /* A number in [0,1) of a fixed sequence (Steele et al. 2014, splitmix64). */
 static uint64_t random_state = 1;
@@ -144,7 +149,8 @@ typedef struct slot {
     sized retired[8]; /* used by frames up to this one, and by no later one */
     uint32_t retired_count;
     hdrp_v4 expected; /* of the pixel that was read back */
-    uint32_t lights, tiles, cells, entry_capacity;
+    uint32_t lights;
+    uint32_t tile, slices, entry_capacity; /* the tile whose lists were read back */
 } slot;
 
 typedef struct engine {
@@ -192,6 +198,12 @@ static sized sized_make(const engine* e)
 {
     static const uint32_t tiles[] = {0u, 8u, 16u, 32u};
     static const uint32_t slices[] = {0u, 1u, 4u, 64u};
+    static const uint32_t flags[] = {0u,
+                                     HDRP_CULL_FAST,
+                                     HDRP_CULL_ONE_SERIES,
+                                     HDRP_CULL_PIXELS,
+                                     HDRP_CULL_BLOCKS,
+                                     HDRP_CULL_MASKS};
     sized s;
     memset(&s, 0, sizeof s);
     s.width = random_whole(1u, random_number() < 0.2 ? 8u : SIDE_MAX);
@@ -201,7 +213,8 @@ static sized sized_make(const engine* e)
     s.desc.tile_width_px = s.desc.tile_height_px = tiles[random_whole(0u, 3u)];
     s.desc.slice_count = slices[random_whole(0u, 3u)];
     s.desc.shape_capacity = LIGHTS_MAX;
-    s.desc.flags = random_number() < 0.3 ? HDRP_CULL_ONE_SERIES : 0u;
+    s.desc.flags = flags[random_whole(0u, 5u)];
+    s.desc.slice_count = s.desc.flags >= HDRP_CULL_PIXELS ? 1u : s.desc.slice_count;
     s.depth = make_image(e, VK_FORMAT_R32_SFLOAT, s.width, s.height, 0u);
     s.lit = make_image(e, VK_FORMAT_R32G32B32A32_SFLOAT, s.width, s.height, 0u);
     s.shown =
@@ -318,15 +331,43 @@ static void record_lists(engine* e, slot* f, const hdrp_depth_params* params)
 {
     sized* s = &e->now;
     hdrp_gpu_vk_cull_frame frame = {0};
+    VkBufferCopy region[2];
     frame.camera = s->camera;
     frame.shapes = f->shapes.buffer;
     frame.count = f->lights;
-    if (random_number() < 0.8) {
+    if ((s->desc.flags & HDRP_CULL_PIXELS) || random_number() < 0.8) {
         frame.view = s->depth.view;
         frame.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
         frame.device = params;
     }
     assert_int_equal(hdrp_gpu_vk_build_lists(&e->gpu, f->commands, &s->lists, &frame), HDRP_OK);
+    f->tile = random_whole(0u, s->lists.grid.tiles.z * s->lists.grid.tiles.w - 1u);
+    f->slices = s->desc.slice_count;
+    f->entry_capacity = s->desc.entry_capacity;
+    region[0].size = (VkDeviceSize)16 * f->slices;
+    region[0].srcOffset = region[0].size * f->tile;
+    region[0].dstOffset = CELLS_AT;
+    region[1].size = (VkDeviceSize)4 * f->entry_capacity;
+    region[1].srcOffset = region[1].size * f->tile;
+    region[1].dstOffset = ENTRIES_AT;
+    vkCmdCopyBuffer(f->commands, s->lists.cells.buffer, f->back.buffer, 1, &region[0]);
+    vkCmdCopyBuffer(f->commands, s->lists.entries.buffer, f->back.buffer, 1, &region[1]);
+}
+
+/* Lists of a tile lie in its room, and name lights that there are. */
+static void look_at_lists(const slot* f, const uint8_t* back)
+{
+    const hdrp_u32x4* cells = (const hdrp_u32x4*)(const void*)(back + CELLS_AT);
+    const uint32_t* entries = (const uint32_t*)(const void*)(back + ENTRIES_AT);
+    uint32_t begin = f->tile * f->entry_capacity;
+    for (uint32_t i = 0; i < f->slices; ++i) {
+        uint32_t last = hdrp_cull_last(cells[i], 3u);
+        assert_in_range(cells[i].x, begin, begin + f->entry_capacity);
+        assert_in_range(last, cells[i].x, begin + f->entry_capacity);
+        for (uint32_t k = cells[i].x; k < last; ++k) {
+            assert_true((entries[k - begin] & 0xffffu) < f->lights);
+        }
+    }
 }
 #endif
 
@@ -402,6 +443,9 @@ static void finish(engine* e, slot* f)
     assert_true(fabsf((float)pixel[1] - 255.0f * f->expected.y) <= 1.6f);
     assert_true(fabsf((float)pixel[2] - 255.0f * f->expected.z) <= 1.6f);
     assert_int_equal(pixel[3], 255);
+#ifdef HDRP_GPU_VK_PASS_LISTS
+    look_at_lists(f, pixel);
+#endif
     gpu_unmap(&device, &f->back);
     while (f->retired_count > 0u) {
         sized_destroy(e, &f->retired[--f->retired_count]);
@@ -476,7 +520,7 @@ static void engine_open(engine* e, const VkAllocationCallbacks* callbacks)
         assert_int_equal(vkCreateFence(device.device, &fence, NULL, &f->fence), VK_SUCCESS);
         f->texels = make_host_buffer(e, (VkDeviceSize)4 * SIDE_MAX * SIDE_MAX);
         f->shapes = make_host_buffer(e, (VkDeviceSize)LIGHTS_MAX * sizeof(hdrp_cull_shape));
-        f->back = make_host_buffer(e, 64);
+        f->back = make_host_buffer(e, BACK_BYTES);
     }
     e->fgd = make_image(e, VK_FORMAT_R16G16B16A16_SFLOAT, 4u, 4u, VK_IMAGE_USAGE_STORAGE_BIT);
     e->sky = make_image(e, VK_FORMAT_R32G32B32A32_SFLOAT, 37u, 19u, 0u);
