@@ -9,6 +9,7 @@
 typedef enum rd_quality { RD_QUALITY_FAST, RD_QUALITY_BALANCED, RD_QUALITY_REFERENCE } rd_quality;
 /* The built-in scenes. */
 typedef enum rd_builtin { RD_BUILTIN_DISPLAY, RD_BUILTIN_LIGHTS } rd_builtin;
+typedef enum rd_backend { RD_BACKEND_CPU, RD_BACKEND_VULKAN } rd_backend;
 typedef enum rd_path { RD_PATH_DEFERRED, RD_PATH_FORWARD } rd_path;
 
 /* What --features turns on and off. */
@@ -47,6 +48,7 @@ typedef struct rd_options {
     int lights;
     int frames;
     uint32_t seed;
+    rd_backend backend;
     rd_quality quality;
     rd_path path;
     rd_view view;

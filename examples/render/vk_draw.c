@@ -1,0 +1,117 @@
+/* Pipelines that draw meshes, and their draws. */
+#include "vk_frame.h"
+
+#include "gbuffer_frag.h"
+#include "mask_frag.h"
+#include "mesh_vert.h"
+#include "view_frag.h"
+
+#include <string.h>
+
+#define CODE(name)                                                                                 \
+    {                                                                                              \
+        spirv_##name, sizeof spirv_##name                                                          \
+    }
+
+/* >>pipelines */
+
+static const struct {
+    rd_vk_pass pass;
+    rd_vk_code fragment;
+    VkCompareOp compare;
+    bool writes_depth;
+    rd_vk_blend blend;
+} programs[RD_VK_PROGRAM_COUNT] = {
+    [RD_VK_PROGRAM_DEPTH] = {RD_VK_PASS_DEPTH, {NULL, 0}, VK_COMPARE_OP_GREATER, true,
+                             RD_VK_BLEND_NONE},
+    [RD_VK_PROGRAM_MASK] = {RD_VK_PASS_DEPTH, CODE(mask_frag), VK_COMPARE_OP_GREATER, true,
+                            RD_VK_BLEND_NONE},
+    [RD_VK_PROGRAM_GBUFFER] = {RD_VK_PASS_GBUFFER, CODE(gbuffer_frag), VK_COMPARE_OP_EQUAL, false,
+                               RD_VK_BLEND_NONE},
+    [RD_VK_PROGRAM_VIEW] = {RD_VK_PASS_LIT, CODE(view_frag), VK_COMPARE_OP_EQUAL, false,
+                            RD_VK_BLEND_NONE},
+    [RD_VK_PROGRAM_VIEW_LAYER] = {RD_VK_PASS_LIT, CODE(view_frag), VK_COMPARE_OP_GREATER, false,
+                                  RD_VK_BLEND_OVER},
+};
+
+/* Made when a draw first needs it: compiling takes time. Without, the report says why. */
+static VkPipeline pipeline_of(rd_vk* vk, rd_vk_program program)
+{
+    VkPipeline* p = &vk->programs[program];
+    rd_vk_pipeline_desc desc;
+    if (*p || vk->device.report->failed) {
+        return *p;
+    }
+    memset(&desc, 0, sizeof desc);
+    desc.vertex.words = spirv_mesh_vert;
+    desc.vertex.bytes = sizeof spirv_mesh_vert;
+    desc.fragment = programs[program].fragment;
+    desc.pass = programs[program].pass;
+    desc.compare = programs[program].compare;
+    desc.writes_depth = programs[program].writes_depth;
+    desc.blend = programs[program].blend;
+    rd_vk_pipeline_make(&vk->raster, &vk->device, &desc, p);
+    return *p;
+}
+
+void rd_vk_programs_free(rd_vk* vk)
+{
+    for (int i = 0; vk->device.device && i < RD_VK_PROGRAM_COUNT; ++i) {
+        vkDestroyPipeline(vk->device.device, vk->programs[i], NULL);
+    }
+}
+
+/* >>draws */
+
+static void draw(rd_vk* vk, rd_vk_program program, uint32_t mesh, uint32_t first, uint32_t count,
+                 bool ordered)
+{
+    int material = vk->scene.scene->meshes[mesh].material;
+    VkPipeline p = pipeline_of(vk, program);
+    VkCommandBuffer commands = vk->device.commands;
+    const uint32_t push[4] = {mesh, ordered, 0, 0};
+    if (!p) {
+        return;
+    }
+    if (p != vk->bound) {
+        vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, p);
+        vk->bound = p;
+    }
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, vk->raster.layout, 1, 1,
+                            &vk->scene.material_sets[material], 0, NULL);
+    vkCmdPushConstants(commands, vk->raster.layout,
+                       VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof push,
+                       push);
+    vkCmdDraw(commands, count * 3, 1, first * 3, 0);
+}
+
+static void bind_frame(rd_vk* vk)
+{
+    vk->bound = VK_NULL_HANDLE;
+    vkCmdBindDescriptorSets(vk->device.commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
+                            vk->raster.layout, 0, 1, &vk->frame_set, 0, NULL);
+}
+
+void rd_vk_draw_meshes(rd_vk* vk, rd_vk_program program, rd_vk_choice choice)
+{
+    const rd_scene* scene = vk->scene.scene;
+    bind_frame(vk);
+    for (int i = 0; i < scene->mesh_count; ++i) {
+        const rd_mesh* m = &scene->meshes[i];
+        const rd_material* material = &scene->materials[m->material];
+        bool masked = material->alpha_mode == RD_ALPHA_MASK;
+        if (!rd_material_is_layer(material) &&
+            (choice == RD_VK_ALL || masked == (choice == RD_VK_MASKED))) {
+            draw(vk, program, (uint32_t)i, 0, m->triangle_count, false);
+        }
+    }
+}
+
+void rd_vk_draw_layers(rd_vk* vk, rd_vk_program program)
+{
+    bind_frame(vk);
+    for (uint32_t i = 0; i < vk->order.run_count; ++i) {
+        const rd_vk_batch* run = &vk->order.runs[i];
+        draw(vk, program, run->mesh, run->first, run->count, true);
+    }
+}

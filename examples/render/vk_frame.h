@@ -1,0 +1,69 @@
+/* What the passes of the Vulkan backend share. */
+#ifndef RD_VK_FRAME_H
+#define RD_VK_FRAME_H
+
+#include "frame.h"
+#include "vk_backend.h"
+#include "vk_raster.h"
+#include "vk_scene.h"
+
+/* As in shaders/scene.glsl. */
+typedef struct rd_vk_frame {
+    hdrp_v4 eye_step, right_half_width, up_half_height, forward_orthographic;
+    hdrp_v4 jitter_size, depths_exposure;
+    uint32_t bits[4], sample_of[4];
+    hdrp_cull_camera cull;
+} rd_vk_frame;
+
+/* Triangles of one mesh, of those that are sorted. */
+typedef struct rd_vk_run {
+    uint32_t mesh, first, count;
+} rd_vk_batch;
+
+/* What is seen through, from back to front. */
+typedef struct rd_vk_order {
+    uint32_t capacity, count; /* triangles */
+    uint32_t run_count;
+    void* keys;
+    rd_vk_batch* runs;
+    rd_vk_mapped buffer; /* triangles of their meshes */
+} rd_vk_order;
+
+typedef enum rd_vk_program {
+    RD_VK_PROGRAM_DEPTH,
+    RD_VK_PROGRAM_MASK,
+    RD_VK_PROGRAM_GBUFFER,
+    RD_VK_PROGRAM_VIEW,
+    RD_VK_PROGRAM_VIEW_LAYER,
+    RD_VK_PROGRAM_COUNT
+} rd_vk_program;
+
+struct rd_vk {
+    rd_vk_device device;
+    rd_vk_scene scene;
+    rd_vk_raster raster;
+    rd_vk_order order;
+    rd_vk_mapped frame;   /* rd_vk_frame */
+    rd_vk_mapped picture; /* what is read back */
+    VkDescriptorSetLayout frame_layout;
+    VkDescriptorPool pool;
+    VkDescriptorSet frame_set;
+    VkPipeline programs[RD_VK_PROGRAM_COUNT], bound;
+    rd_vk_frame values;
+};
+
+/* vk_order.c */
+bool rd_vk_order_make(rd_vk* vk);
+void rd_vk_order_free(rd_vk* vk);
+void rd_vk_order_sort(rd_vk* vk, const rd_camera* camera);
+
+/* vk_draw.c */
+/* Which opaque meshes. */
+typedef enum rd_vk_choice { RD_VK_ALL, RD_VK_SOLID, RD_VK_MASKED } rd_vk_choice;
+
+void rd_vk_programs_free(rd_vk* vk);
+void rd_vk_draw_meshes(rd_vk* vk, rd_vk_program program, rd_vk_choice choice);
+/* The sorted triangles. */
+void rd_vk_draw_layers(rd_vk* vk, rd_vk_program program);
+
+#endif

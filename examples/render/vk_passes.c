@@ -1,0 +1,4 @@
+/* The passes of hdrp_gpu_vk.h. */
+#include "vk_api.h"
+#define HDRP_GPU_VK_IMPLEMENTATION
+#include "hdrp_gpu_vk.h"
