@@ -661,6 +661,22 @@ HDRP_FN hdrp_brdf_lit_view hdrp_brdf_lit_view_make(hdrp_brdf_data d, hdrp_v3 v, 
     return w;
 }
 
+/** The view for a light whose source has a size: as if normals varied that much more.
+ *  w         valid
+ *  variance  [0,1]  in units of alpha^2, such as hdrp_light_variance gives
+ *  returns   valid  for hdrp_brdf_lit_eval alone
+ *  edges     unchanged for variance 0
+ *  error     none: variances of independent deviations add up
+ *  source    Kaplanyan et al. 2016, "Filtering Distributions of Normals for Shading Antialiasing",
+ *            eq. 8 */
+HDRP_FN hdrp_brdf_lit_view hdrp_brdf_lit_view_widened(hdrp_brdf_lit_view w, float variance)
+{
+    w.alphas.t = hdrp_sqrt(w.alphas.t * w.alphas.t + variance);
+    w.alphas.b = hdrp_sqrt(w.alphas.b * w.alphas.b + variance);
+    w.coat_alpha = hdrp_sqrt(w.coat_alpha * w.coat_alpha + variance);
+    return w;
+}
+
 /** D V of the base lobe. */
 HDRP_FN float hdrp_i_brdf_lit_dv(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdrp_v3 l, hdrp_v3 h,
                                  float n_dot_l, hdrp_u32 features)

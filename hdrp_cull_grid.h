@@ -274,6 +274,22 @@ HDRP_FN hdrp_u32 hdrp_cull_entry_covers(hdrp_cull_grid grid, hdrp_u32 entry, hdr
     return (entry >> (16u + ((y & 3u) * 4u + (x & 3u)))) & 1u;
 }
 
+/** The bit of entries that stands for the block of a pixel, for loops over many of them:
+ *  hdrp_cull_entry_covers tests it.
+ *  grid     valid
+ *  x_px     any
+ *  y_px     any
+ *  returns  any  a single bit of the upper half
+ *  edges    the pixel has to be in the tile of the list
+ *  error    none: a selection of bits
+ *  source   a definition */
+HDRP_FN hdrp_u32 hdrp_cull_entry_bit(hdrp_cull_grid grid, hdrp_u32 x_px, hdrp_u32 y_px)
+{
+    hdrp_u32 x = (x_px % grid.tiles.x) / grid.cells.z;
+    hdrp_u32 y = (y_px % grid.tiles.y) / grid.cells.w;
+    return 1u << (16u + ((y & 3u) * 4u + (x & 3u)));
+}
+
 /* Where a pixel is in the mask of a tile: block by block, in each row by row. */
 HDRP_FN hdrp_u32 hdrp_i_cull_mask_place(hdrp_cull_grid grid, hdrp_u32 x_px, hdrp_u32 y_px)
 {

@@ -219,6 +219,44 @@ HDRP_FN hdrp_v3 hdrp_cull_view_from_world(hdrp_v3 position, hdrp_cull_camera cam
                         hdrp_i_cull_dot(d, hdrp_v3_from_v4(camera.forward_orthographic)));
 }
 
+/** Where a pixel is, as a difference to the eye of the camera.
+ *  camera    valid
+ *  x_px      any      of the picture, from the left; the middle of the first pixel is 0.5
+ *  y_px      any      likewise, from the top
+ *  width_px  [1,16384]
+ *  height_px [1,16384]
+ *  z_view    [0,1e18] m  depth of what is there
+ *  returns   any      m, along the axes of the world
+ *  edges     none
+ *  error     none: the definition of a camera, turned round
+ *  source    a definition
+ *  note      the position is the sum of this and the eye; far from the origin the difference has
+ *            digits that the position has lost */
+HDRP_FN hdrp_v3 hdrp_cull_offset_of_pixel(hdrp_cull_camera camera, float x_px, float y_px,
+                                          float width_px, float height_px, float z_view)
+{
+    float x = camera.window.x + camera.window.z * (x_px / width_px);
+    float y = camera.window.y + camera.window.w * (1.0f - y_px / height_px);
+    float spread = camera.forward_orthographic.w > 0.0f ? 1.0f : z_view;
+    hdrp_v3 p = hdrp_v3_scale(hdrp_v3_from_v4(camera.forward_orthographic), z_view);
+    p = hdrp_v3_mad(p, hdrp_v3_from_v4(camera.right_far), x * spread);
+    return hdrp_v3_mad(p, hdrp_v3_from_v4(camera.up), y * spread);
+}
+
+/** Direction from a place towards the viewer.
+ *  camera   valid
+ *  offset   any   m  of the place, from hdrp_cull_offset_of_pixel
+ *  returns  unit
+ *  edges    at the eye, against the direction of view
+ *  error    none: a definition
+ *  source   a definition */
+HDRP_FN hdrp_v3 hdrp_cull_direction_to_eye(hdrp_cull_camera camera, hdrp_v3 offset)
+{
+    hdrp_v3 back = hdrp_v3_neg(hdrp_v3_from_v4(camera.forward_orthographic));
+    hdrp_v3 to_eye = hdrp_normalize_or(hdrp_v3_neg(offset), back);
+    return hdrp_v3_select(camera.forward_orthographic.w, back, to_eye);
+}
+
 /* >>shapes
  * What a light, a probe or a decal reaches, as a convex body: lists are made of these. */
 

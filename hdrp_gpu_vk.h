@@ -43,6 +43,7 @@
 #include "hdrp_gpu_vk_core.h"
 #include "hdrp_gpu_vk_cull.h"
 #include "hdrp_gpu_vk_env.h"
+#include "hdrp_gpu_vk_light.h"
 
 #if HDRP_VERSION != 100
 #error "hdrp_gpu_vk.h 0.1.0 needs the hdrp_math.h of the same version"
@@ -101,6 +102,7 @@ HDRP_API hdrp_result hdrp_gpu_vk_begin_frame(hdrp_gpu_vk* gpu, uint32_t frame);
 #include "hdrp_gpu_vk_core.h"
 #include "hdrp_gpu_vk_cull.h"
 #include "hdrp_gpu_vk_env.h"
+#include "hdrp_gpu_vk_light.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -175,7 +177,7 @@ static void hdrp_i_gpu_vk_check(hdrp_gpu_vk_functions* vk, const hdrp_gpu_vk_des
     hdrp_i_gpu_vk_need(missing, properties.apiVersion >= VK_API_VERSION_1_1, "Vulkan 1.1");
     hdrp_i_gpu_vk_need(missing, (hdrp_i_gpu_vk_queue_flags(vk, desc) & VK_QUEUE_COMPUTE_BIT) != 0u,
                        "VK_QUEUE_COMPUTE_BIT in the queue family");
-    if (passes & HDRP_GPU_VK_PASS_FGD) {
+    if (passes & (HDRP_GPU_VK_PASS_FGD | HDRP_GPU_VK_PASS_LIGHT)) {
         hdrp_i_gpu_vk_need(missing,
                            desc->features && desc->features->shaderStorageImageWriteWithoutFormat,
                            "shaderStorageImageWriteWithoutFormat");
@@ -201,7 +203,7 @@ HDRP_API const char* hdrp_gpu_vk_missing(const hdrp_gpu_vk_desc* desc, uint32_t 
 static VkResult hdrp_i_gpu_vk_pool(hdrp_gpu_vk* gpu, VkDescriptorPool* pool)
 {
     static const char letters[] = "stcbu";
-    static const uint32_t at_most[] = {4u, 8u, 8u, 16u, 2u}; /* of each in a shader */
+    static const uint32_t at_most[] = {4u, 12u, 8u, 16u, 2u}; /* of each in a shader */
     VkDescriptorPoolSize sizes[5];
     VkDescriptorPoolCreateInfo info;
     uint32_t i;
@@ -245,7 +247,7 @@ static VkResult hdrp_i_gpu_vk_make_shaders(hdrp_gpu_vk* gpu,
             continue;
         }
         r = hdrp_i_gpu_vk_layouts(gpu, &shader, made);
-        if (r == VK_SUCCESS) {
+        if (r == VK_SUCCESS && shader.has_variants == 0u) {
             r = hdrp_i_gpu_vk_specialise(gpu, &shader, made->layout, NULL, &made->pipeline);
         }
     }
@@ -258,6 +260,7 @@ static VkResult hdrp_i_gpu_vk_make(hdrp_gpu_vk* gpu)
     uint32_t i;
     r = r == VK_SUCCESS ? hdrp_i_gpu_vk_make_shaders(gpu, hdrp_i_gpu_vk_cull_shader) : r;
     r = r == VK_SUCCESS ? hdrp_i_gpu_vk_make_shaders(gpu, hdrp_i_gpu_vk_env_shader) : r;
+    r = r == VK_SUCCESS ? hdrp_i_gpu_vk_make_shaders(gpu, hdrp_i_gpu_vk_light_shader) : r;
     for (i = 0u; i < gpu->desc.frames && r == VK_SUCCESS; ++i) {
         r = hdrp_i_gpu_vk_pool(gpu, &gpu->pools[i]);
     }

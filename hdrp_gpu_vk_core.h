@@ -29,7 +29,8 @@ extern "C" {
 /* Passes, or-ed. What is not asked for is not created, and needs nothing of the device. */
 #define HDRP_GPU_VK_PASS_FGD   1u
 #define HDRP_GPU_VK_PASS_DEPTH 2u
-#define HDRP_GPU_VK_PASS_ALL   3u
+#define HDRP_GPU_VK_PASS_LIGHT 32u
+#define HDRP_GPU_VK_PASS_ALL   35u
 
 /* Room for the compute shaders of all passes. */
 #define HDRP_GPU_VK_SHADERS_MAX 32u
@@ -229,11 +230,14 @@ extern "C" {
 
 /* ---- what a pass is made of ------------------------------------------------------------------ */
 
-#define HDRP_I_GPU_VK_BINDINGS_MAX 20u
+#define HDRP_I_GPU_VK_BINDINGS_MAX 24u
 
 /* Places in hdrp_gpu_vk.pipelines. */
-#define HDRP_I_GPU_VK_FGD   0u
-#define HDRP_I_GPU_VK_DEPTH 1u
+#define HDRP_I_GPU_VK_FGD      0u
+#define HDRP_I_GPU_VK_DEPTH    1u
+#define HDRP_I_GPU_VK_CLASSIFY 16u
+#define HDRP_I_GPU_VK_DISPATCH 17u
+#define HDRP_I_GPU_VK_DEFERRED 18u
 
 /* A compute shader. Each letter of `bindings` is the type of one, in order from 0 on: s storage
  * image, t sampled image, c sampled image with a sampler, b storage buffer, u uniform buffer. */
@@ -245,6 +249,7 @@ typedef struct hdrp_i_gpu_vk_shader {
     size_t bytes;
     const char* bindings;
     uint32_t push_bytes;
+    uint32_t has_variants; /* 1: its pipelines are made later, specialised */
 } hdrp_i_gpu_vk_shader;
 
 HDRP_I_GPU_VK_FN hdrp_i_gpu_vk_shader hdrp_i_gpu_vk_shader_make(uint32_t index, uint32_t pass,

@@ -1421,4 +1421,35 @@ HDRP_FN hdrp_light_incident hdrp_light_eval(hdrp_light light, hdrp_v3 position)
     return r;
 }
 
+/** Sine of half the angle at which the source of a light is seen.
+ *  light     valid
+ *  incident  valid  of the light, at the place that sees it
+ *  returns   [0,1]
+ *  edges     0 where the light has no size and for boxes; from 0.99 on 0.99, but for directional
+ *            lights
+ *  error     none: a definition
+ *  source    a ball of the radius of the record; a disc of its angle in the sky */
+HDRP_FN float hdrp_light_sine(hdrp_light light, hdrp_light_incident incident)
+{
+    hdrp_u32 type = hdrp_light_type(light);
+    float size = light.forward_radius.w;
+    float sky = hdrp_i_light_sin(hdrp_clamp(0.5f * size, 0.0f, HDRP_HALF_PI));
+    float near_by = hdrp_min(size / hdrp_max(incident.distance_m, 1e-6f), 0.99f);
+    float seen = type == HDRP_LIGHT_TYPE_BOX || !(size > 0.0f) ? 0.0f : near_by;
+    return type == HDRP_LIGHT_TYPE_DIRECTIONAL ? sky : seen;
+}
+
+/** Variance of normals that widens a highlight as the size of a source does.
+ *  sine     [0,1]  from hdrp_light_sine
+ *  returns  [0,0.125]  in units of alpha^2, for hdrp_brdf_lit_view_widened
+ *  edges    none
+ *  error    none: a model
+ *  source   half vectors move by half the angle, so that their slopes are even over a disc of radius
+ *           sine / 2, whose variance along an axis is a quarter of its square; alpha^2 is twice a
+ *           variance */
+HDRP_FN float hdrp_light_variance(float sine)
+{
+    return 0.5f * hdrp_sq(0.5f * sine);
+}
+
 #endif /* HDRP_LIGHT_H */

@@ -1220,32 +1220,38 @@ HDRP_FN hdrp_pack_gbuffer hdrp_pack_gbuffer_encode(hdrp_brdf_data d, hdrp_pack_g
     return g;
 }
 
-/* Adds what the anisotropy and iridescence variants store. */
-HDRP_FN hdrp_brdf_data hdrp_i_pack_gbuffer_decode_metallic(hdrp_brdf_data d, hdrp_v4 rt2,
-                                                           hdrp_u32 variant)
+/* Adds the metallic of the anisotropy and iridescence variants. */
+HDRP_FN hdrp_brdf_data hdrp_i_pack_gbuffer_set_metallic(hdrp_brdf_data d, float metallic)
 {
-    hdrp_pack_float_uint_pair pair = hdrp_pack_float_uint_from_target(rt2.z, 3u, 8u);
-    hdrp_pack_float_uint_pair film;
-    hdrp_u32 angle;
-    float thickness;
-    d.metallic = pair.f;
+    d.metallic = metallic;
     d.diffuse_color = hdrp_brdf_diffuse_color(d.base_color, d.metallic);
     d.fresnel0 =
         hdrp_brdf_fresnel0(d.base_color, d.metallic, hdrp_v3_splat(HDRP_PACK_GBUFFER_FRESNEL0));
-    if (variant == HDRP_PACK_GBUFFER_ANISOTROPY) {
-        d.anisotropy = hdrp_pack_float_from_biased_snorm_target(rt2.x, 8u);
-        angle = (hdrp_pack_unorm_from_float(rt2.y, 8u) << 3u) | pair.i;
-        d.tangent = hdrp_pack_tangent_from_angle11(d.normal, angle);
-        d.bitangent = hdrp_v3_cross(d.normal, d.tangent);
-    } else {
-        film = hdrp_pack_float_uint_from_target(rt2.x, 1u, 8u);
-        thickness =
-            hdrp_pack_float_from_unorm((hdrp_pack_unorm_from_float(rt2.y, 8u) << 1u) | film.i, 9u);
-        d.film_ior = 1.0f + 2.0f * film.f;
-        d.film_thickness_nm = thickness * thickness * HDRP_PACK_GBUFFER_FILM_MAX_NM;
-        d.film_mask = hdrp_pack_float_from_unorm(pair.i, 3u);
-    }
     return d;
+}
+
+/* Adds what the anisotropy variant stores. */
+HDRP_FN hdrp_brdf_data hdrp_i_pack_gbuffer_decode_stretched(hdrp_brdf_data d, hdrp_v4 rt2)
+{
+    hdrp_pack_float_uint_pair pair = hdrp_pack_float_uint_from_target(rt2.z, 3u, 8u);
+    hdrp_u32 angle = (hdrp_pack_unorm_from_float(rt2.y, 8u) << 3u) | pair.i;
+    d.anisotropy = hdrp_pack_float_from_biased_snorm_target(rt2.x, 8u);
+    d.tangent = hdrp_pack_tangent_from_angle11(d.normal, angle);
+    d.bitangent = hdrp_v3_cross(d.normal, d.tangent);
+    return hdrp_i_pack_gbuffer_set_metallic(d, pair.f);
+}
+
+/* Adds what the iridescence variant stores. */
+HDRP_FN hdrp_brdf_data hdrp_i_pack_gbuffer_decode_film(hdrp_brdf_data d, hdrp_v4 rt2)
+{
+    hdrp_pack_float_uint_pair pair = hdrp_pack_float_uint_from_target(rt2.z, 3u, 8u);
+    hdrp_pack_float_uint_pair film = hdrp_pack_float_uint_from_target(rt2.x, 1u, 8u);
+    float thickness =
+        hdrp_pack_float_from_unorm((hdrp_pack_unorm_from_float(rt2.y, 8u) << 1u) | film.i, 9u);
+    d.film_ior = 1.0f + 2.0f * film.f;
+    d.film_thickness_nm = thickness * thickness * HDRP_PACK_GBUFFER_FILM_MAX_NM;
+    d.film_mask = hdrp_pack_float_from_unorm(pair.i, 3u);
+    return hdrp_i_pack_gbuffer_set_metallic(d, pair.f);
 }
 
 /* Adds what the SSS and transmission variants store. */
@@ -1260,6 +1266,53 @@ HDRP_FN hdrp_brdf_data hdrp_i_pack_gbuffer_decode_sss(hdrp_brdf_data d, hdrp_v4 
     return d;
 }
 
+/** Engine data of target values whose material has no other features than some.
+ *  g         any    what the targets returned; limited to their ranges
+ *  targets   any    HDRP_PACK_GBUFFER_RT4, _RT5: which optional targets exist
+ *  features  any    HDRP_BRDF_FEATURE_... that the material may have: a constant mask lets the
+ *            compiler drop the code for the others
+ *  returns   valid
+ *  edges     NaN counts as 0; fields that the variant does not store get the defaults listed above,
+ *            and so do those of a feature that is not in the mask
+ *  error     none: see hdrp_pack_gbuffer_encode
+ *  source    Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
+ *            Definition Render Pipeline", GBuffer slides
+ *  note      a caller whose diffusion profiles have an F0 or a transmittance sets them afterwards */
+HDRP_FN hdrp_brdf_data hdrp_pack_gbuffer_decode_features(hdrp_pack_gbuffer g, hdrp_u32 targets,
+                                                         hdrp_u32 features)
+{
+    hdrp_brdf_data d = hdrp_brdf_data_from_surface(hdrp_brdf_surface_default());
+    hdrp_pack_normal_pair rt1 = hdrp_pack_normal_buffer_decode(g.rt1);
+    hdrp_pack_float_uint_pair rt2 = hdrp_pack_float_uint_from_target(g.rt2.w, 3u, 8u);
+    hdrp_basis frame = hdrp_basis_from_normal(rt1.normal);
+    hdrp_u32 sss = features & (HDRP_BRDF_FEATURE_SUBSURFACE | HDRP_BRDF_FEATURE_TRANSMISSION);
+    d.features = hdrp_pack_gbuffer_features(g.rt2) & features;
+    d.diffuse_color = hdrp_v3_saturate(hdrp_v3_from_v4(g.rt0));
+    d.base_color = d.diffuse_color;
+    d.specular_occlusion = hdrp_saturate(g.rt0.w);
+    d.normal = rt1.normal;
+    d.perceptual_roughness = rt1.perceptual_roughness;
+    d.tangent = frame.tangent;
+    d.bitangent = frame.bitangent;
+    d.coat_normal = rt1.normal;
+    d.coat_mask = (features & HDRP_BRDF_FEATURE_CLEAR_COAT) != 0u ? rt2.f : 0.0f;
+    if ((targets & HDRP_PACK_GBUFFER_RT4) != 0u) {
+        d.ambient_occlusion = hdrp_saturate(g.rt4.z);
+    }
+    if ((features & HDRP_BRDF_FEATURE_ANISOTROPY) != 0u && rt2.i == HDRP_PACK_GBUFFER_ANISOTROPY) {
+        return hdrp_i_pack_gbuffer_decode_stretched(d, g.rt2);
+    }
+    if ((features & HDRP_BRDF_FEATURE_IRIDESCENCE) != 0u &&
+        rt2.i == HDRP_PACK_GBUFFER_IRIDESCENCE) {
+        return hdrp_i_pack_gbuffer_decode_film(d, g.rt2);
+    }
+    if (sss != 0u && rt2.i != HDRP_PACK_GBUFFER_STANDARD && rt2.i < HDRP_PACK_GBUFFER_ANISOTROPY) {
+        return hdrp_i_pack_gbuffer_decode_sss(d, g.rt2);
+    }
+    d.fresnel0 = hdrp_v3_linear_from_srgb_fast(hdrp_v3_from_v4(g.rt2));
+    return d;
+}
+
 /** Engine data of target values.
  *  g        any    what the targets returned; limited to their ranges
  *  targets  any    HDRP_PACK_GBUFFER_RT4, _RT5: which optional targets exist
@@ -1271,31 +1324,7 @@ HDRP_FN hdrp_brdf_data hdrp_i_pack_gbuffer_decode_sss(hdrp_brdf_data d, hdrp_v4 
  *  note     a caller whose diffusion profiles have an F0 or a transmittance sets them afterwards */
 HDRP_FN hdrp_brdf_data hdrp_pack_gbuffer_decode(hdrp_pack_gbuffer g, hdrp_u32 targets)
 {
-    hdrp_brdf_data d = hdrp_brdf_data_from_surface(hdrp_brdf_surface_default());
-    hdrp_pack_normal_pair rt1 = hdrp_pack_normal_buffer_decode(g.rt1);
-    hdrp_pack_float_uint_pair rt2 = hdrp_pack_float_uint_from_target(g.rt2.w, 3u, 8u);
-    hdrp_basis frame = hdrp_basis_from_normal(rt1.normal);
-    d.features = hdrp_pack_gbuffer_features(g.rt2);
-    d.diffuse_color = hdrp_v3_saturate(hdrp_v3_from_v4(g.rt0));
-    d.base_color = d.diffuse_color;
-    d.specular_occlusion = hdrp_saturate(g.rt0.w);
-    d.normal = rt1.normal;
-    d.perceptual_roughness = rt1.perceptual_roughness;
-    d.tangent = frame.tangent;
-    d.bitangent = frame.bitangent;
-    d.coat_normal = rt1.normal;
-    d.coat_mask = rt2.f;
-    if ((targets & HDRP_PACK_GBUFFER_RT4) != 0u) {
-        d.ambient_occlusion = hdrp_saturate(g.rt4.z);
-    }
-    if (rt2.i == HDRP_PACK_GBUFFER_ANISOTROPY || rt2.i == HDRP_PACK_GBUFFER_IRIDESCENCE) {
-        return hdrp_i_pack_gbuffer_decode_metallic(d, g.rt2, rt2.i);
-    }
-    if (rt2.i != HDRP_PACK_GBUFFER_STANDARD && rt2.i < HDRP_PACK_GBUFFER_ANISOTROPY) {
-        return hdrp_i_pack_gbuffer_decode_sss(d, g.rt2);
-    }
-    d.fresnel0 = hdrp_v3_linear_from_srgb_fast(hdrp_v3_from_v4(g.rt2));
-    return d;
+    return hdrp_pack_gbuffer_decode_features(g, targets, HDRP_BRDF_FEATURE_ALL);
 }
 
 /** What target values hold beside the material.

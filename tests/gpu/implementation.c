@@ -1,6 +1,8 @@
 /* implementation.c - the algorithms that the tests of the GPU call. SPDX-License-Identifier: MIT */
 #define HDRP_BRDF_IMPLEMENTATION
 #define HDRP_CULL_IMPLEMENTATION
+#define HDRP_ENV_IMPLEMENTATION
 #define HDRP_GPU_VK_IMPLEMENTATION
 #include "hdrp_brdf.h"
+#include "hdrp_env.h"
 #include "hdrp_gpu_vk.h"
