@@ -37,6 +37,7 @@
     X(CmdClearColorImage)                                                                          \
     X(CmdCopyBuffer)                                                                               \
     X(CmdCopyBufferToImage)                                                                        \
+    X(CmdCopyImage)                                                                                \
     X(CmdCopyImageToBuffer)                                                                        \
     X(CmdDraw)                                                                                     \
     X(CmdEndRenderPass)                                                                            \

@@ -1,9 +1,13 @@
 /* Pipelines that draw meshes, and their draws. */
 #include "vk_frame.h"
 
+#include "forward_frag.h"
 #include "gbuffer_frag.h"
+#include "layer_frag.h"
 #include "mask_frag.h"
 #include "mesh_vert.h"
+#include "screen_vert.h"
+#include "sky_frag.h"
 #include "view_frag.h"
 
 #include <string.h>
@@ -32,19 +36,44 @@ static const struct {
                             RD_VK_BLEND_NONE},
     [RD_VK_PROGRAM_VIEW_LAYER] = {RD_VK_PASS_LIT, CODE(view_frag), VK_COMPARE_OP_GREATER, false,
                                   RD_VK_BLEND_OVER},
+    [RD_VK_PROGRAM_FORWARD] = {RD_VK_PASS_LIT, CODE(forward_frag), VK_COMPARE_OP_EQUAL, false,
+                               RD_VK_BLEND_NONE},
+    [RD_VK_PROGRAM_SKY] = {RD_VK_PASS_LIT, CODE(sky_frag), VK_COMPARE_OP_EQUAL, false,
+                           RD_VK_BLEND_NONE},
+    [RD_VK_PROGRAM_LAYER] = {RD_VK_PASS_LIT, CODE(layer_frag), VK_COMPARE_OP_GREATER, false,
+                             RD_VK_BLEND_LAYER},
 };
+
+/* Features of the materials that a program may meet. */
+static hdrp_u32 features_of(const rd_vk* vk, rd_vk_program program)
+{
+    const rd_scene* scene = vk->scene.scene;
+    hdrp_u32 features = 0u;
+    for (int i = 0; i < scene->material_count; ++i) {
+        const rd_material* m = &scene->materials[i];
+        if (rd_material_is_layer(m) == (program == RD_VK_PROGRAM_LAYER)) {
+            features |= m->features;
+        }
+    }
+    return features & vk->values.bits[1];
+}
 
 /* Made when a draw first needs it: compiling takes time. Without, the report says why. */
 static VkPipeline pipeline_of(rd_vk* vk, rd_vk_program program)
 {
     VkPipeline* p = &vk->programs[program];
+    bool lit = program == RD_VK_PROGRAM_FORWARD || program == RD_VK_PROGRAM_LAYER;
+    const uint32_t constants[2] = {features_of(vk, program), RD_VK_FORWARD_WORD};
     rd_vk_pipeline_desc desc;
     if (*p || vk->device.report->failed) {
         return *p;
     }
     memset(&desc, 0, sizeof desc);
-    desc.vertex.words = spirv_mesh_vert;
-    desc.vertex.bytes = sizeof spirv_mesh_vert;
+    desc.vertex.words = program == RD_VK_PROGRAM_SKY ? spirv_screen_vert : spirv_mesh_vert;
+    desc.vertex.bytes =
+        program == RD_VK_PROGRAM_SKY ? sizeof spirv_screen_vert : sizeof spirv_mesh_vert;
+    desc.constants = constants;
+    desc.constant_count = lit ? 2u : 0u;
     desc.fragment = programs[program].fragment;
     desc.pass = programs[program].pass;
     desc.compare = programs[program].compare;
@@ -85,23 +114,47 @@ static void draw(rd_vk* vk, rd_vk_program program, uint32_t mesh, uint32_t first
     vkCmdDraw(commands, count * 3, 1, first * 3, 0);
 }
 
-static void bind_frame(rd_vk* vk)
+/* `light`: the set of lighting with lists of clusters, for layers, or without. */
+static void bind_frame(rd_vk* vk, int light)
 {
     vk->bound = VK_NULL_HANDLE;
     vkCmdBindDescriptorSets(vk->device.commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
                             vk->raster.layout, 0, 1, &vk->frame_set, 0, NULL);
+    if (vk->light.sets[light]) {
+        vkCmdBindDescriptorSets(vk->device.commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
+                                vk->raster.layout, 2, 1, &vk->light.sets[light], 0, NULL);
+    }
+}
+
+/* The standard layout holds all that has no feature. */
+static bool may_be_forward(const rd_vk* vk, const rd_material* m)
+{
+    return vk->values.bits[3] != 0u || m->unlit || (m->features & vk->values.bits[1]) != 0u;
+}
+
+static bool is_chosen(const rd_vk* vk, const rd_material* m, rd_vk_choice choice)
+{
+    bool masked = m->alpha_mode == RD_ALPHA_MASK;
+    switch (choice) {
+    case RD_VK_SOLID:
+        return !masked;
+    case RD_VK_MASKED:
+        return masked;
+    case RD_VK_FORWARD:
+        return may_be_forward(vk, m);
+    default:
+        return true;
+    }
 }
 
 void rd_vk_draw_meshes(rd_vk* vk, rd_vk_program program, rd_vk_choice choice)
 {
     const rd_scene* scene = vk->scene.scene;
-    bind_frame(vk);
+    bind_frame(vk, 0);
     for (int i = 0; i < scene->mesh_count; ++i) {
         const rd_mesh* m = &scene->meshes[i];
         const rd_material* material = &scene->materials[m->material];
-        bool masked = material->alpha_mode == RD_ALPHA_MASK;
-        if (!rd_material_is_layer(material) &&
-            (choice == RD_VK_ALL || masked == (choice == RD_VK_MASKED))) {
+        if (!rd_material_is_layer(material) && is_chosen(vk, material, choice)) {
             draw(vk, program, (uint32_t)i, 0, m->triangle_count, false);
         }
     }
@@ -109,9 +162,19 @@ void rd_vk_draw_meshes(rd_vk* vk, rd_vk_program program, rd_vk_choice choice)
 
 void rd_vk_draw_layers(rd_vk* vk, rd_vk_program program)
 {
-    bind_frame(vk);
+    bind_frame(vk, 1);
     for (uint32_t i = 0; i < vk->order.run_count; ++i) {
         const rd_vk_batch* run = &vk->order.runs[i];
         draw(vk, program, run->mesh, run->first, run->count, true);
+    }
+}
+
+void rd_vk_draw_sky(rd_vk* vk)
+{
+    VkPipeline p = pipeline_of(vk, RD_VK_PROGRAM_SKY);
+    bind_frame(vk, 0);
+    if (p) {
+        vkCmdBindPipeline(vk->device.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, p);
+        vkCmdDraw(vk->device.commands, 3, 1, 0, 0);
     }
 }

@@ -1,6 +1,7 @@
 /* The Vulkan backend: what a frame reads, the order of its passes, its film. */
 #include "vk_frame.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -33,6 +34,27 @@ static void set_camera(rd_vk_frame* f, const rd_camera* c, int spp)
     f->forward_orthographic = hdrp_v4_from_v3(c->forward, c->orthographic ? 1.0f : 0.0f);
 }
 
+static void set_sky(rd_vk_frame* f, const rd_renderer* r)
+{
+    const rd_environment* e = r->lighting->environment;
+    bool shown = r->options->view == RD_VIEW_LIT && r->options->features & RD_FEATURE_SKY;
+    memset(&f->sky, 0, sizeof f->sky);
+    memset(&f->to_sun, 0, sizeof f->to_sun);
+    memset(&f->sun_nits, 0, sizeof f->sun_nits);
+    if (!shown || !e->present) {
+        return;
+    }
+    f->sky.x = e->seen.kind == HDRP_ENV_CUBE ? 2.0f : 1.0f;
+    if (e->disc) {
+        float diameter = e->sun.forward_radius.w;
+        float per_lux = hdrp_light_nits_from_lux_sky_disc(1.0f, diameter);
+        f->sky.y = hdrp_sq(sinf(0.5f * diameter));
+        f->to_sun = hdrp_v4_from_v3(hdrp_v3_neg(hdrp_v3_from_v4(e->sun.forward_radius)), 0.0f);
+        f->sun_nits = hdrp_v4_from_v3(
+            hdrp_v3_scale(hdrp_v3_from_v4(e->sun.color_inv_range_sq), per_lux), 0.0f);
+    }
+}
+
 static void fill_frame(rd_vk* vk, const rd_sub_frame* s)
 {
     const rd_renderer* r = s->r;
@@ -47,6 +69,7 @@ static void fill_frame(rd_vk* vk, const rd_sub_frame* s)
     f->bits[3] = r->options->path == RD_PATH_FORWARD;
     f->sample_of[0] = s->index;
     f->sample_of[1] = r->options->seed;
+    set_sky(f, r);
     memcpy(vk->frame.at, f, sizeof *f);
 }
 
@@ -124,28 +147,36 @@ static bool can_show(const rd_renderer* r, rd_report* report)
     if (r->options->quality == RD_QUALITY_REFERENCE && stage == RD_STAGE_LIGHTING) {
         return rd_fail(report, "--quality reference", "needs --backend cpu");
     }
-    if (stage == RD_STAGE_LISTS || view == RD_VIEW_LAYERS || view == RD_VIEW_AO) {
+    if (stage == RD_STAGE_LISTS || view == RD_VIEW_DIFFUSE || view == RD_VIEW_SPECULAR || view == RD_VIEW_LAYERS || view == RD_VIEW_AO) {
         return rd_fail(report, "--view", "%s needs --backend cpu", rd_view_name(view));
     }
     return true;
 }
 
+static bool is_lit(const rd_renderer* r)
+{
+    return rd_view_stage_of(r->options->view) == RD_STAGE_LIGHTING;
+}
+
 static bool make_all(rd_vk* vk, const rd_renderer* r)
 {
     const size_t pixels = (size_t)r->width * (size_t)r->height;
-    VkDescriptorSetLayout layouts[2];
+    VkDescriptorSetLayout layouts[3];
     if (!rd_vk_scene_make(&vk->scene, &vk->device, r->scene) || !rd_vk_order_make(vk) ||
         !rd_vk_mapped_make(&vk->device, sizeof(rd_vk_frame), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
                            &vk->frame) ||
         !rd_vk_mapped_make(&vk->device, pixels * 16, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
                            &vk->picture) ||
-        !make_frame_layout(vk)) {
+        !make_frame_layout(vk) || !rd_vk_light_layout_make(&vk->light, &vk->device)) {
         return false;
     }
     layouts[0] = vk->frame_layout;
     layouts[1] = vk->scene.material_layout;
-    return make_frame_set(vk) && rd_vk_raster_make(&vk->raster, &vk->device, (uint32_t)r->width,
-                                                   (uint32_t)r->height, layouts, 2);
+    layouts[2] = vk->light.layout;
+    return make_frame_set(vk) &&
+           rd_vk_raster_make(&vk->raster, &vk->device, (uint32_t)r->width, (uint32_t)r->height,
+                             layouts, 3) &&
+           (!is_lit(r) || rd_vk_light_make(&vk->light, &vk->device, r, &vk->raster));
 }
 
 rd_vk* rd_vk_open(rd_renderer* r, rd_report* report)
@@ -177,6 +208,7 @@ void rd_vk_close(rd_vk* vk)
         rd_vk_programs_free(vk);
         vkDestroyDescriptorPool(device, vk->pool, NULL);
         vkDestroyDescriptorSetLayout(device, vk->frame_layout, NULL);
+        rd_vk_light_free(&vk->light, &vk->device);
         rd_vk_raster_free(&vk->raster, &vk->device);
         rd_vk_mapped_free(&vk->device, &vk->frame);
         rd_vk_mapped_free(&vk->device, &vk->picture);
@@ -211,7 +243,7 @@ static void keep_depth(rd_vk* vk)
                  VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL);
 }
 
-static void clear_lit(rd_vk* vk)
+static void clear_lit(rd_vk* vk, VkImageLayout after)
 {
     const VkClearColorValue zero = {{0.0f, 0.0f, 0.0f, 0.0f}};
     const VkImageSubresourceRange all = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
@@ -220,12 +252,12 @@ static void clear_lit(rd_vk* vk)
     vkCmdClearColorImage(vk->device.commands, lit->base.image,
                          VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &zero, 1, &all);
     rd_vk_layout(&vk->device, lit, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                 VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+                 after);
 }
 
 static void view(rd_vk* vk, const rd_sub_frame* s)
 {
-    clear_lit(vk);
+    clear_lit(vk, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
     rd_vk_pass_begin(&vk->raster, &vk->device, RD_VK_PASS_LIT);
     rd_vk_draw_meshes(vk, RD_VK_PROGRAM_VIEW, RD_VK_ALL);
     if (rd_view_stage_of(s->r->options->view) == RD_STAGE_MATERIAL) {
@@ -233,6 +265,100 @@ static void view(rd_vk* vk, const rd_sub_frame* s)
     }
     rd_vk_pass_end(&vk->device);
     rd_vk_mark(&vk->device, "view");
+}
+
+static void gbuffer(rd_vk* vk)
+{
+    rd_vk_pass_begin(&vk->raster, &vk->device, RD_VK_PASS_GBUFFER);
+    rd_vk_draw_meshes(vk, RD_VK_PROGRAM_GBUFFER, RD_VK_ALL);
+    rd_vk_pass_end(&vk->device);
+    for (int i = RD_VK_RT0; i <= RD_VK_KINDS; ++i) {
+        rd_vk_layout(&vk->device, &vk->raster.targets[i], VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                     VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    }
+    rd_vk_mark(&vk->device, "GBuffer");
+}
+
+/* The camera of lists and lighting: as in lists.c, samples are the centres of its pixels. */
+static hdrp_cull_camera cull_camera(const rd_vk* vk, const rd_sub_frame* s)
+{
+    const rd_camera* c = &s->r->camera;
+    float w = (float)c->width_px, h = (float)c->height_px;
+    float x = s->jitter.x - 0.5f, y = s->jitter.y - 0.5f;
+    float left = (2.0f * x / w - 1.0f) * c->half_width;
+    float right = (2.0f * (x + w) / w - 1.0f) * c->half_width;
+    float top = (1.0f - 2.0f * y / h) * c->half_height;
+    float bottom = (1.0f - 2.0f * (y + h) / h) * c->half_height;
+    float near_m = vk->values.depths_exposure.x;
+    return (c->orthographic ? hdrp_cull_camera_orthographic : hdrp_cull_camera_perspective)(
+        c->eye, c->forward, c->up, left, right, bottom, top, near_m, HDRP_CULL_FAR_INFINITE);
+}
+
+static bool deferred(rd_vk* vk, const rd_sub_frame* s)
+{
+    rd_vk_device* d = &vk->device;
+    const rd_vk_image* lit = &vk->raster.targets[RD_VK_LIT];
+    hdrp_cull_camera camera = cull_camera(vk, s);
+    hdrp_v4 at = vk->values.depths_exposure;
+    bool ok = rd_vk_check_hdrp(d, hdrp_gpu_vk_begin_frame(&d->gpu, 0), "a frame") &&
+              rd_vk_light_begin(&vk->light, d, &vk->raster, &camera, hdrp_v2_make(at.x, at.y),
+                                s->r->exposure);
+    clear_lit(vk, VK_IMAGE_LAYOUT_GENERAL);
+    ok = ok && rd_vk_light_deferred(&vk->light, d, &vk->raster);
+    rd_vk_layout(d, lit, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+    return ok;
+}
+
+static void forward(rd_vk* vk)
+{
+    rd_vk_pass_begin(&vk->raster, &vk->device, RD_VK_PASS_LIT);
+    rd_vk_draw_meshes(vk, RD_VK_PROGRAM_FORWARD, RD_VK_FORWARD);
+    rd_vk_draw_sky(vk);
+    rd_vk_pass_end(&vk->device);
+    rd_vk_mark(&vk->device, "forward opaque and sky");
+}
+
+/* For glass, which looks the opaque picture up. */
+static void keep_opaque(rd_vk* vk)
+{
+    rd_vk_device* d = &vk->device;
+    const rd_vk_image *lit = &vk->raster.targets[RD_VK_LIT], *behind = &vk->light.behind;
+    const VkImageCopy whole = {.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                               .dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                               .extent = {vk->raster.width, vk->raster.height, 1}};
+    rd_vk_layout(d, lit, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                 VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    rd_vk_layout(d, behind, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+    vkCmdCopyImage(d->commands, lit->base.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                   behind->base.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &whole);
+    rd_vk_layout(d, lit, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                 VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+    rd_vk_layout(d, behind, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                 VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+}
+
+static void transparent(rd_vk* vk)
+{
+    keep_opaque(vk);
+    rd_vk_pass_begin(&vk->raster, &vk->device, RD_VK_PASS_LIT);
+    rd_vk_draw_layers(vk, RD_VK_PROGRAM_LAYER);
+    rd_vk_pass_end(&vk->device);
+    rd_vk_mark(&vk->device, "transparent surfaces");
+}
+
+/* The order of the talk. */
+static bool lighting(rd_vk* vk, const rd_sub_frame* s)
+{
+    gbuffer(vk);
+    keep_depth(vk);
+    if (!deferred(vk, s)) {
+        return false;
+    }
+    forward(vk);
+    if (vk->order.count > 0) {
+        transparent(vk);
+    }
+    return true;
 }
 
 static void read_back(rd_vk* vk)
@@ -254,8 +380,7 @@ static void add_to_film(rd_vk* vk, rd_renderer* r)
 {
     size_t pixels = (size_t)r->width * (size_t)r->height;
     const float* from = (const float*)vk->picture.at;
-    bool lit = rd_view_stage_of(r->options->view) == RD_STAGE_LIGHTING;
-    float k = lit ? 1.0f / r->exposure : 1.0f;
+    float k = is_lit(r) ? 1.0f / r->exposure : 1.0f;
     for (size_t i = 0; i < pixels; ++i) {
         for (size_t c = 0; c < 3; ++c) {
             r->film[i * 4 + c] += from[i * 4 + c] * k;
@@ -271,8 +396,12 @@ static bool sub_frame(rd_vk* vk, const rd_sub_frame* s)
         return false;
     }
     depth_prepass(vk);
-    keep_depth(vk);
-    view(vk, s);
+    if (is_lit(s->r)) {
+        lighting(vk, s);
+    } else {
+        keep_depth(vk);
+        view(vk, s);
+    }
     read_back(vk);
     if (vk->device.report->failed || !rd_vk_run(&vk->device)) {
         return false;

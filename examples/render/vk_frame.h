@@ -4,6 +4,7 @@
 
 #include "frame.h"
 #include "vk_backend.h"
+#include "vk_light.h"
 #include "vk_raster.h"
 #include "vk_scene.h"
 
@@ -12,7 +13,7 @@ typedef struct rd_vk_frame {
     hdrp_v4 eye_step, right_half_width, up_half_height, forward_orthographic;
     hdrp_v4 jitter_size, depths_exposure;
     uint32_t bits[4], sample_of[4];
-    hdrp_cull_camera cull;
+    hdrp_v4 sky, to_sun, sun_nits;
 } rd_vk_frame;
 
 /* Triangles of one mesh, of those that are sorted. */
@@ -35,6 +36,9 @@ typedef enum rd_vk_program {
     RD_VK_PROGRAM_GBUFFER,
     RD_VK_PROGRAM_VIEW,
     RD_VK_PROGRAM_VIEW_LAYER,
+    RD_VK_PROGRAM_FORWARD,
+    RD_VK_PROGRAM_SKY,
+    RD_VK_PROGRAM_LAYER,
     RD_VK_PROGRAM_COUNT
 } rd_vk_program;
 
@@ -43,6 +47,7 @@ struct rd_vk {
     rd_vk_scene scene;
     rd_vk_raster raster;
     rd_vk_order order;
+    rd_vk_light light;
     rd_vk_mapped frame;   /* rd_vk_frame */
     rd_vk_mapped picture; /* what is read back */
     VkDescriptorSetLayout frame_layout;
@@ -52,6 +57,9 @@ struct rd_vk {
     rd_vk_frame values;
 };
 
+/* What forward lighting is compiled for, beside materials. */
+#define RD_VK_FORWARD_WORD (HDRP_GPU_VK_WORD_ALL & ~HDRP_GPU_VK_WORD_NEGATIVE)
+
 /* vk_order.c */
 bool rd_vk_order_make(rd_vk* vk);
 void rd_vk_order_free(rd_vk* vk);
@@ -59,11 +67,17 @@ void rd_vk_order_sort(rd_vk* vk, const rd_camera* camera);
 
 /* vk_draw.c */
 /* Which opaque meshes. */
-typedef enum rd_vk_choice { RD_VK_ALL, RD_VK_SOLID, RD_VK_MASKED } rd_vk_choice;
+typedef enum rd_vk_choice {
+    RD_VK_ALL,
+    RD_VK_SOLID,
+    RD_VK_MASKED,
+    RD_VK_FORWARD /* that a GBuffer may not hold */
+} rd_vk_choice;
 
 void rd_vk_programs_free(rd_vk* vk);
 void rd_vk_draw_meshes(rd_vk* vk, rd_vk_program program, rd_vk_choice choice);
 /* The sorted triangles. */
 void rd_vk_draw_layers(rd_vk* vk, rd_vk_program program);
+void rd_vk_draw_sky(rd_vk* vk);
 
 #endif

@@ -14,11 +14,9 @@ layout(set = 0, binding = 0) uniform Frame {
     vec4 depths_exposure;      // nearest, farthest, exposure
     uvec4 bits;                // features, features of materials, view, 1: forward path
     uvec4 sample_of;           // index, seed, 1: table of FGD, 1: lists of lights
-    vec4 cull_eye_near;        // hdrp_cull_camera of the jittered picture
-    vec4 cull_right_far;
-    vec4 cull_up;
-    vec4 cull_forward_orthographic;
-    vec4 cull_window;
+    vec4 sky;                  // 1: lat-long, 2: cube; squared sine of the radius of the sun
+    vec4 to_sun;
+    vec4 sun_nits;             // of its disc
 } frame;
 
 struct Mesh {
