@@ -16,7 +16,7 @@
  * >>index of the functions, without hdrp_brdf_ (written by tools/api_check.py --write)
  *   material: surface_default diffuse_color fresnel0 data_from_surface metallic_from_colors
  *       data_from_diffuse_specular dielectric_fresnel0
- *   lit: lit_view_make lit_eval dominant_direction lit_env_make
+ *   lit: lit_view_make lit_view_widened lit_eval dominant_direction lit_env_make
  *   sampling lit: lit_pdf lit_sample
  *   fgd table, C and C++ only: fgd_integrate fgd_bake_rows fgd_lookup
  * >>end */

@@ -37,14 +37,15 @@
  *
  * >>index of the functions, without hdrp_cull_ (written by tools/api_check.py --write)
  *   sets of shapes: set_memory_size set_init set_begin set_project
- *   grids of lists: memory_size init begin measure_depth rows scratch_size build count masks
- *       light_features apply_blockers
+ *   grids of lists: desc_complete memory_size init begin measure_depth rows scratch_size build
+ *       count masks light_features apply_blockers
  * >>end */
 #ifndef HDRP_CULL_H
 #define HDRP_CULL_H
 
 #include "hdrp_cull_blocker.h"
 #include "hdrp_cull_grid.h"
+#include "hdrp_cull_tile.h"
 #include "hdrp_cull_variant.h"
 #include "hdrp_cull_volume.h"
 
@@ -161,6 +162,14 @@ typedef struct hdrp_cull_depth {
     size_t row_stride;               /* texels from row to row */
     const hdrp_depth_params* device; /* how to read device depth; NULL: texels are metres */
 } hdrp_cull_depth;
+
+/** A description of lists with its defaults in place, as hdrp_cull_init keeps it.
+ *  desc      sizes
+ *  complete  result; may be desc
+ *  returns   HDRP_OK, or an error, with complete untouched
+ *  errors    HDRP_ERROR_NULL_POINTER, HDRP_ERROR_BAD_ARGUMENT for sizes out of their ranges,
+ *            HDRP_ERROR_TOO_LARGE where cells, entries or masks are more than 32 bits can count */
+HDRP_API hdrp_result hdrp_cull_desc_complete(const hdrp_cull_desc* desc, hdrp_cull_desc* complete);
 
 /** Bytes that hdrp_cull_init needs.
  *  desc     sizes
@@ -483,11 +492,6 @@ HDRP_API hdrp_result hdrp_cull_set_project(hdrp_cull_set* set, const hdrp_cull_s
 
 /* ---- lists ----------------------------------------------------------------------------------- */
 
-/* A tile has four times four blocks of pixels. */
-#define HDRP_I_CULL_BLOCKS 16u
-/* A coarse cell of about 64 pixels is asked for as a whole first. */
-#define HDRP_I_CULL_COARSE_PX 64u
-
 /* The descriptor with its defaults; width_px is 0 where it is not valid. */
 static hdrp_cull_desc hdrp_i_cull_defaults(const hdrp_cull_desc* desc)
 {
@@ -537,6 +541,23 @@ static uint32_t hdrp_i_cull_tiles(const hdrp_cull_desc* d, uint32_t* columns, ui
                    tiles * d->entry_capacity * (1u + hdrp_i_cull_words(d)) > 0xffffffffu
                ? 0u
                : (uint32_t)tiles;
+}
+
+HDRP_API hdrp_result hdrp_cull_desc_complete(const hdrp_cull_desc* desc, hdrp_cull_desc* complete)
+{
+    hdrp_cull_desc d = hdrp_i_cull_defaults(desc);
+    uint32_t columns, rows;
+    if (!desc || !complete) {
+        return HDRP_ERROR_NULL_POINTER;
+    }
+    if (d.width_px == 0u) {
+        return HDRP_ERROR_BAD_ARGUMENT;
+    }
+    if (hdrp_i_cull_tiles(&d, &columns, &rows) == 0u) {
+        return HDRP_ERROR_TOO_LARGE;
+    }
+    *complete = d;
+    return HDRP_OK;
 }
 
 static size_t hdrp_i_cull_place_lists(hdrp_cull_lists* lists, uint32_t tiles, void* memory)
@@ -780,12 +801,6 @@ typedef struct hdrp_i_cull_job {
     hdrp_v4 rect_px;         /* the same as floats */
 } hdrp_i_cull_job;
 
-/* Tiles of a coarse cell along one side. */
-static uint32_t hdrp_i_cull_coarse_tiles(uint32_t tile_px)
-{
-    return tile_px * 2u <= HDRP_I_CULL_COARSE_PX ? HDRP_I_CULL_COARSE_PX / tile_px : 2u;
-}
-
 static float* hdrp_i_cull_floats(hdrp_i_cull_arena* arena, size_t count)
 {
     return (float*)hdrp_i_cull_take(arena, count, sizeof(float));
@@ -796,8 +811,8 @@ static size_t hdrp_i_cull_place_scratch(hdrp_i_cull_scratch* s, const hdrp_cull_
 {
     hdrp_i_cull_arena a;
     size_t n = ((size_t)d->shape_capacity + 7u) & ~(size_t)7u;
-    size_t across = (columns + hdrp_i_cull_coarse_tiles(d->tile_width_px) - 1u) /
-                    hdrp_i_cull_coarse_tiles(d->tile_width_px);
+    size_t across = (columns + hdrp_cull_coarse_tiles(d->tile_width_px) - 1u) /
+                    hdrp_cull_coarse_tiles(d->tile_width_px);
     size_t pixels = 0u, across_px = 0u;
     float** of_shapes[] = {&s->left,
                            &s->upper,
@@ -867,8 +882,17 @@ HDRP_API size_t hdrp_cull_scratch_size(const hdrp_cull_desc* desc)
 
 HDRP_API uint32_t hdrp_cull_rows(const hdrp_cull_lists* lists)
 {
-    uint32_t tiles = lists ? hdrp_i_cull_coarse_tiles(lists->desc.tile_height_px) : 1u;
+    uint32_t tiles = lists ? hdrp_cull_coarse_tiles(lists->desc.tile_height_px) : 1u;
     return lists ? (lists->grid.tiles.w + tiles - 1u) / tiles : 0u;
+}
+
+/* The coarse cell of a place, as hdrp_cull_bounds_in_cell compares: a quotient may be rounded up to
+ * the next one. */
+static uint32_t hdrp_i_cull_cell_of(float x_px, float cell_px)
+{
+    float x = hdrp_max(x_px, 0.0f);
+    uint32_t cell = (uint32_t)(x / cell_px);
+    return cell - ((float)cell * cell_px > x ? 1u : 0u);
 }
 
 /* Appends a shape to the coarse cells of a row that its rectangle reaches. */
@@ -876,8 +900,8 @@ static void hdrp_i_cull_spread(hdrp_i_cull_job* job, uint32_t i, uint32_t across
 {
     hdrp_v4 rect = job->set->bounds[i].rect_px;
     float cell_px = (float)(job->coarse_columns * job->lists->grid.tiles.x);
-    uint32_t first = (uint32_t)(hdrp_max(rect.x, 0.0f) / cell_px);
-    uint32_t last = (uint32_t)(hdrp_max(rect.z, 0.0f) / cell_px);
+    uint32_t first = hdrp_i_cull_cell_of(rect.x, cell_px),
+             last = hdrp_i_cull_cell_of(rect.z, cell_px);
     last = last < across ? last : across - 1u;
     for (; first <= last; ++first) {
         job->s.coarse[(size_t)first * job->s.capacity + job->s.coarse_count[first]++] = (uint16_t)i;
@@ -947,21 +971,16 @@ static void hdrp_i_cull_gather(hdrp_i_cull_job* job, uint32_t column)
 
 /* ---- tests of candidates --------------------------------------------------------------------- */
 
-/* Depths are looked up with functions that may be contracted elsewhere: hdrp_cull_slice. */
-#define HDRP_I_CULL_DEPTH_MARGIN 2e-6f
-
 /* The depths of a candidate that are among those of a rectangle; none where the rectangles do not
  * overlap. */
 HDRP_FN hdrp_cull_interval hdrp_i_cull_overlap(const hdrp_i_cull_scratch* s, uint32_t m,
                                                hdrp_v4 rect_px, hdrp_cull_interval seen)
 {
-    /* A difference is positive where there is a gap. */
-    float x = hdrp_max(s->left[m] - rect_px.z, rect_px.x - s->right[m]);
-    float y = hdrp_max(s->upper[m] - rect_px.w, rect_px.y - s->lower[m]);
-    seen.nearest = hdrp_max(s->nearest[m], seen.nearest);
-    seen.farthest = hdrp_min(s->farthest[m], seen.farthest);
-    seen.nearest = hdrp_max(x, y) <= 0.0f ? seen.nearest : HDRP_FLT_MAX;
-    return seen;
+    hdrp_cull_bounds b;
+    b.rect_px = hdrp_v4_make(s->left[m], s->upper[m], s->right[m], s->lower[m]);
+    b.nearest = s->nearest[m];
+    b.farthest = s->farthest[m];
+    return hdrp_cull_bounds_in_rect(b, rect_px, seen);
 }
 
 /* What is left of the depths of a candidate inside its ball. */
@@ -970,10 +989,7 @@ HDRP_FN hdrp_cull_interval hdrp_i_cull_in_ball(const hdrp_i_cull_scratch* s, uin
                                                float orthographic)
 {
     hdrp_v4 ball = hdrp_v4_make(s->x[m], s->y[m], s->z[m], s->radius[m]);
-    hdrp_cull_interval r = hdrp_cull_interval_ball(tile, ball, orthographic);
-    depths.nearest = hdrp_max(r.nearest * (1.0f - HDRP_I_CULL_DEPTH_MARGIN), depths.nearest);
-    depths.farthest = hdrp_min(r.farthest * (1.0f + HDRP_I_CULL_DEPTH_MARGIN), depths.farthest);
-    return depths;
+    return hdrp_cull_interval_within(depths, hdrp_cull_interval_ball(tile, ball, orthographic));
 }
 
 /* The depths of each candidate in a tile: none where nearest > farthest. */
@@ -1036,6 +1052,7 @@ static hdrp_cull_interval hdrp_i_cull_in_planes(const hdrp_i_cull_job* job, uint
     const float* y = x + HDRP_CULL_PLANES_STRIDE;
     const float* z = y + HDRP_CULL_PLANES_STRIDE;
     const float* w = z + HDRP_CULL_PLANES_STRIDE;
+    hdrp_cull_interval both;
     uint32_t k, half_count;
     HDRP_I_CULL_INDEPENDENT
     for (k = 0u; k < HDRP_CULL_PLANES_STRIDE; ++k) {
@@ -1052,9 +1069,9 @@ static hdrp_cull_interval hdrp_i_cull_in_planes(const hdrp_i_cull_job* job, uint
             farthest[k] = hdrp_min(farthest[k + half_count], farthest[k]);
         }
     }
-    depths.nearest = hdrp_max(nearest[0] * (1.0f - HDRP_I_CULL_DEPTH_MARGIN), depths.nearest);
-    depths.farthest = hdrp_min(farthest[0] * (1.0f + HDRP_I_CULL_DEPTH_MARGIN), depths.farthest);
-    return depths;
+    both.nearest = nearest[0];
+    both.farthest = farthest[0];
+    return hdrp_cull_interval_within(depths, both);
 }
 
 /* Drops the hits whose planes keep them out of the tile. */
@@ -1088,9 +1105,7 @@ static void hdrp_i_cull_find(hdrp_i_cull_job* job, hdrp_cull_tile tile, float lo
 {
     float orthographic = job->lists->camera.forward_orthographic.w;
     uint32_t fast = job->lists->desc.flags & HDRP_CULL_FAST;
-    hdrp_cull_interval seen;
-    seen.nearest = lo * (1.0f - HDRP_I_CULL_DEPTH_MARGIN);
-    seen.farthest = hi * (1.0f + HDRP_I_CULL_DEPTH_MARGIN);
+    hdrp_cull_interval seen = hdrp_cull_interval_seen(lo, hi);
     if (fast || pixels) {
         hdrp_i_cull_test_bounds(job, seen);
     } else if (orthographic > 0.0f) {
@@ -1114,7 +1129,7 @@ static void hdrp_i_cull_place_pixels(const hdrp_i_cull_job* job)
 {
     uint32_t width = job->lists->grid.cells.z, height = job->lists->grid.cells.w, block, x, y;
     size_t n = 0u;
-    for (block = 0u; block < HDRP_I_CULL_BLOCKS; ++block) {
+    for (block = 0u; block < HDRP_CULL_BLOCK_COUNT; ++block) {
         for (y = 0u; y < height; ++y) {
             for (x = 0u; x < width; ++x, ++n) {
                 job->s.local_x[n] = (float)(int)(block % 4u * width + x);
@@ -1141,7 +1156,7 @@ static void hdrp_i_cull_scatter(const float* row, uint32_t width, uint32_t of_bl
 
 /* The nearest and the farthest depth of each block. */
 typedef struct hdrp_i_cull_ranges {
-    float nearest[HDRP_I_CULL_BLOCKS], farthest[HDRP_I_CULL_BLOCKS];
+    float nearest[HDRP_CULL_BLOCK_COUNT], farthest[HDRP_CULL_BLOCK_COUNT];
 } hdrp_i_cull_ranges;
 
 /* Those of a band of four blocks, from those of its columns. */
@@ -1211,108 +1226,81 @@ static void hdrp_i_cull_read_pixels(const hdrp_i_cull_job* job, hdrp_i_cull_rang
     const float* z = job->s.pixel_z;
     float* x = job->s.pixel_x;
     float* y = job->s.pixel_y;
-    hdrp_v4 w = lists->camera.window;
-    float flat = lists->camera.forward_orthographic.w;
-    float du = w.z / (float)lists->desc.width_px, dv = w.w / (float)lists->desc.height_px;
+    hdrp_cull_camera camera = lists->camera;
+    hdrp_v2 size = hdrp_v2_make(camera.window.z / (float)lists->desc.width_px,
+                                camera.window.w / (float)lists->desc.height_px);
     float x0 = (float)job->x0 + 0.5f;
     float y0 = (float)lists->desc.height_px - (float)job->y0 - 0.5f;
-    uint32_t count = HDRP_I_CULL_BLOCKS * lists->grid.cells.z * lists->grid.cells.w, i;
+    uint32_t count = HDRP_CULL_BLOCK_COUNT * lists->grid.cells.z * lists->grid.cells.w, i;
     hdrp_i_cull_read_depth(job, ranges);
     HDRP_I_CULL_INDEPENDENT
     for (i = 0u; i < count; ++i) {
-        float k = flat > 0.0f ? 1.0f : z[i];
-        x[i] = (w.x + (x0 + local_x[i]) * du) * k;
-        y[i] = (w.y + (y0 - local_y[i]) * dv) * k;
+        hdrp_v3 p = hdrp_cull_pixel_in_view(camera, size, x0 + local_x[i], y0 - local_y[i], z[i]);
+        x[i] = p.x;
+        y[i] = p.y;
     }
 }
 
-/* Boxes around what rectangles of the picture show between two depths. */
+/* Boxes around what the blocks of a tile show. */
 typedef struct hdrp_i_cull_boxes {
-    float x0[HDRP_I_CULL_BLOCKS], x1[HDRP_I_CULL_BLOCKS];
-    float y0[HDRP_I_CULL_BLOCKS], y1[HDRP_I_CULL_BLOCKS];
-    float z0[HDRP_I_CULL_BLOCKS], z1[HDRP_I_CULL_BLOCKS];
+    float x0[HDRP_CULL_BLOCK_COUNT], x1[HDRP_CULL_BLOCK_COUNT];
+    float y0[HDRP_CULL_BLOCK_COUNT], y1[HDRP_CULL_BLOCK_COUNT];
+    float z0[HDRP_CULL_BLOCK_COUNT], z1[HDRP_CULL_BLOCK_COUNT];
 } hdrp_i_cull_boxes;
 
-static void hdrp_i_cull_set_box(hdrp_i_cull_boxes* b, uint32_t i, const float window[4],
-                                float nearest, float farthest, float orthographic)
-{
-    float k0 = orthographic > 0.0f ? 1.0f : nearest, k1 = orthographic > 0.0f ? 1.0f : farthest;
-    b->x0[i] = hdrp_min(window[0] * k0, window[0] * k1);
-    b->x1[i] = hdrp_max(window[1] * k0, window[1] * k1);
-    b->y0[i] = hdrp_min(window[2] * k0, window[2] * k1);
-    b->y1[i] = hdrp_max(window[3] * k0, window[3] * k1);
-    b->z0[i] = nearest;
-    b->z1[i] = farthest;
-}
-
-/* A box around the surfaces of each block; one that shows only sky is out of everything's reach. */
 static void hdrp_i_cull_box_blocks(const hdrp_i_cull_job* job, const hdrp_cull_tile* tile,
                                    const hdrp_i_cull_ranges* ranges, hdrp_i_cull_boxes* boxes)
 {
     const hdrp_cull_lists* lists = job->lists;
-    float du = lists->camera.window.z / (float)lists->desc.width_px * (float)lists->grid.cells.z;
-    float dv = lists->camera.window.w / (float)lists->desc.height_px * (float)lists->grid.cells.w;
+    hdrp_v4 w = lists->camera.window;
+    hdrp_v2 size = hdrp_v2_make(w.z / (float)lists->desc.width_px * (float)lists->grid.cells.z,
+                                w.w / (float)lists->desc.height_px * (float)lists->grid.cells.w);
     uint32_t block;
-    for (block = 0u; block < HDRP_I_CULL_BLOCKS; ++block) {
-        float column = (float)(block % 4u), row = (float)(block / 4u), window[4];
-        float nearest = ranges->nearest[block], farthest = ranges->farthest[block];
-        /* As wide as the window of the tile, which is a little wider than its pixels. */
-        window[0] = tile->window.x + column * du;
-        window[1] = hdrp_max(tile->window.y - (3.0f - column) * du, window[0] + du);
-        window[3] = tile->window.w - row * dv;
-        window[2] = hdrp_min(tile->window.z + (3.0f - row) * dv, window[3] - dv);
-        if (farthest < 0.0f) {
-            nearest = farthest = 2.0f * HDRP_LIGHT_RANGE_INFINITE;
-        }
-        hdrp_i_cull_set_box(boxes, block, window, nearest, farthest,
-                            lists->camera.forward_orthographic.w);
+    for (block = 0u; block < HDRP_CULL_BLOCK_COUNT; ++block) {
+        hdrp_cull_interval depths;
+        hdrp_cull_box b;
+        depths.nearest = ranges->nearest[block];
+        depths.farthest = ranges->farthest[block];
+        b = hdrp_cull_block_box(tile->window, size, block, depths,
+                                lists->camera.forward_orthographic.w);
+        boxes->x0[block] = b.low.x;
+        boxes->x1[block] = b.high.x;
+        boxes->y0[block] = b.low.y;
+        boxes->y1[block] = b.high.y;
+        boxes->z0[block] = b.low.z;
+        boxes->z1[block] = b.high.z;
     }
 }
 
 /* The blocks that a ball may reach, a bit for each; in the upper half those that it contains. */
 static uint32_t hdrp_i_cull_ball_in_blocks(const hdrp_i_cull_boxes* b, hdrp_v4 ball)
 {
-    float r2 = ball.w * ball.w;
     uint32_t found = 0u, i;
     HDRP_I_CULL_INDEPENDENT
-    for (i = 0u; i < HDRP_I_CULL_BLOCKS; ++i) {
-        float ax = b->x0[i] - ball.x, bx = ball.x - b->x1[i];
-        float ay = b->y0[i] - ball.y, by = ball.y - b->y1[i];
-        float az = b->z0[i] - ball.z, bz = ball.z - b->z1[i];
-        float near_x = hdrp_max(hdrp_max(ax, bx), 0.0f), far_x = hdrp_min(ax, bx);
-        float near_y = hdrp_max(hdrp_max(ay, by), 0.0f), far_y = hdrp_min(ay, by);
-        float near_z = hdrp_max(hdrp_max(az, bz), 0.0f), far_z = hdrp_min(az, bz);
-        float nearest2 = near_x * near_x + near_y * near_y + near_z * near_z;
-        float farthest2 = far_x * far_x + far_y * far_y + far_z * far_z;
-        found |= ((nearest2 <= r2 ? 1u : 0u) | (farthest2 <= r2 ? 0x10000u : 0u)) << i;
+    for (i = 0u; i < HDRP_CULL_BLOCK_COUNT; ++i) {
+        hdrp_cull_box box;
+        box.low = hdrp_v3_make(b->x0[i], b->y0[i], b->z0[i]);
+        box.high = hdrp_v3_make(b->x1[i], b->y1[i], b->z1[i]);
+        found |= hdrp_cull_box_in_ball(box, ball) << i;
     }
     return found;
 }
 
-HDRP_FN float hdrp_i_cull_distance2(hdrp_v3 a, hdrp_v3 b)
-{
-    float x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
-    return x * x + y * y + z * z;
-}
-
-/* Marks the candidates whose ball contains all that a tile shows: the farthest corner of the box
- * around it. */
+/* Marks the candidates whose ball contains all that a tile shows: the box around it. */
 static void hdrp_i_cull_balls_around_tile(const hdrp_i_cull_job* job, const hdrp_cull_tile* tile,
                                           hdrp_v4 info)
 {
     const hdrp_i_cull_scratch s = job->s;
-    float flat = job->lists->camera.forward_orthographic.w;
-    float k0 = flat > 0.0f ? 1.0f : info.x, k1 = flat > 0.0f ? 1.0f : info.y;
-    hdrp_v4 w = tile->window;
-    float x0 = hdrp_min(w.x * k0, w.x * k1), x1 = hdrp_max(w.y * k0, w.y * k1);
-    float y0 = hdrp_min(w.z * k0, w.z * k1), y1 = hdrp_max(w.w * k0, w.w * k1);
     uint32_t count = HDRP_I_CULL_WHOLE(job->candidate_end[HDRP_CULL_CATEGORY_COUNT - 1u]), m;
+    hdrp_cull_interval depths;
+    hdrp_cull_box box;
+    depths.nearest = info.x;
+    depths.farthest = info.y;
+    box = hdrp_cull_window_box(tile->window, depths, job->lists->camera.forward_orthographic.w);
     HDRP_I_CULL_INDEPENDENT
     for (m = 0u; m < count; ++m) {
-        float dx = hdrp_max(s.x[m] - x0, x1 - s.x[m]);
-        float dy = hdrp_max(s.y[m] - y0, y1 - s.y[m]);
-        float dz = hdrp_max(s.z[m] - info.x, info.y - s.z[m]);
-        s.around[m] = dx * dx + dy * dy + dz * dz <= s.radius[m] * s.radius[m] ? 1u : 0u;
+        hdrp_v4 ball = hdrp_v4_make(s.x[m], s.y[m], s.z[m], s.radius[m]);
+        s.around[m] = (uint8_t)(hdrp_cull_box_in_ball(box, ball) >> 16);
     }
 }
 
@@ -1330,9 +1318,9 @@ static void hdrp_i_cull_balls_around_pixels(const hdrp_i_cull_job* job)
     }
     HDRP_I_CULL_INDEPENDENT
     for (m = 0u; m < count; ++m) {
-        hdrp_v3 c = hdrp_v3_make(s.x[m], s.y[m], s.z[m]);
-        float a = hdrp_i_cull_distance2(c, pixels[0]), b = hdrp_i_cull_distance2(c, pixels[1]);
-        float d = hdrp_i_cull_distance2(c, pixels[2]), e = hdrp_i_cull_distance2(c, pixels[3]);
+        hdrp_v4 c = hdrp_v4_make(s.x[m], s.y[m], s.z[m], 0.0f);
+        float a = hdrp_cull_distance_sq(c, pixels[0]), b = hdrp_cull_distance_sq(c, pixels[1]);
+        float d = hdrp_cull_distance_sq(c, pixels[2]), e = hdrp_cull_distance_sq(c, pixels[3]);
         float nearest2 = hdrp_min(hdrp_min(a, b), hdrp_min(d, e));
         s.around[m] = (uint8_t)(s.around[m] | (nearest2 <= s.radius[m] * s.radius[m] ? 1u : 0u));
     }
@@ -1791,8 +1779,8 @@ HDRP_API hdrp_result hdrp_cull_build(hdrp_cull_lists* lists, const hdrp_cull_set
     job.lists = lists;
     job.set = set;
     job.depth = depth;
-    job.coarse_columns = hdrp_i_cull_coarse_tiles(lists->desc.tile_width_px);
-    job.coarse_rows = hdrp_i_cull_coarse_tiles(lists->desc.tile_height_px);
+    job.coarse_columns = hdrp_cull_coarse_tiles(lists->desc.tile_width_px);
+    job.coarse_rows = hdrp_cull_coarse_tiles(lists->desc.tile_height_px);
     for (i = 0u; i < set->count; ++i) {
         job.present |= 1u << hdrp_i_cull_category(set, i);
     }

@@ -16,7 +16,7 @@
  *
  * >>index of the functions, without hdrp_cull_ (written by tools/api_check.py --write)
  *   grid: log2 series_scale opaque_depth tile_of_depths grid_make tile_of_pixel slice cell
- *   lists: first last entry_index entry_covers mask_words mask_word mask_bit lowest_bit
+ *   lists: first last entry_index entry_covers entry_bit mask_words mask_word mask_bit lowest_bit
  * >>end */
 #ifndef HDRP_CULL_GRID_H
 #define HDRP_CULL_GRID_H

@@ -29,7 +29,7 @@
  * override macros. There is no algorithm layer.
  *
  * >>index of the functions, without hdrp_cull_ (written by tools/api_check.py --write)
- *   camera: camera_perspective camera_orthographic view_from_world
+ *   camera: camera_perspective camera_orthographic view_from_world offset_of_pixel direction_to_eye
  *   shapes: shape_sphere shape_box shape_from_light shape_with_features shape_in_layers shape_kind
  *       shape_category shape_in_view shape_ball shape_plane_count shape_plane shape_contains
  *   tiles: tile_make interval_ball interval_plane

@@ -21,14 +21,21 @@
  *
  *     hdrp_gpu_vk_begin_frame(&gpu, frame_number % 2);
  *     hdrp_gpu_vk_fgd_bake(&gpu, commands, &table);       once; outside of render passes, like all
- *     hdrp_gpu_vk_measure_depth(&gpu, commands, &depth);
+ *     hdrp_gpu_vk_build_lists(&gpu, commands, &lists, &frame);     of hdrp_gpu_vk_lists_create
  *
- * Nothing is submitted and nothing is waited for. A pass does what the function of the same name
- * does on the CPU: hdrp_brdf_fgd_bake_rows, hdrp_cull_measure_depth. Each says in which layouts it
+ * Nothing is submitted and nothing is waited for. A pass does what a function does on the CPU:
+ * hdrp_brdf_fgd_bake_rows, hdrp_cull_measure_depth, hdrp_cull_build. Each says in which layouts it
  * takes and leaves images. What it writes may have been read or written by compute and fragment
  * shaders and by copies in earlier commands of the same queue, and may be read by them in later
  * ones: the barriers for that are recorded. What it reads is for the caller to make visible to the
  * compute stage, and so is what comes from another queue or goes there.
+ *
+ * Lists depend on no shading: a context of its own, for the family of a queue that only computes,
+ * records them there while the graphics queue draws shadows. Their buffers are of exclusive
+ * sharing, so that the caller hands them over with a semaphore and, between families, a pair of
+ * barriers.
+ *
+ * hdrp_gpu_vk_lists_create needs the bodies of hdrp_cull.h: HDRP_CULL_IMPLEMENTATION in one file.
  *
  * Pipelines, sets and push constants of VK_PIPELINE_BIND_POINT_COMPUTE are not what they were after
  * a pass. Memory of the host is asked for by the driver alone, through desc.allocation. An
@@ -44,6 +51,7 @@
 #include "hdrp_gpu_vk_cull.h"
 #include "hdrp_gpu_vk_env.h"
 #include "hdrp_gpu_vk_light.h"
+#include "hdrp_gpu_vk_shadow.h"
 
 #if HDRP_VERSION != 100
 #error "hdrp_gpu_vk.h 0.1.0 needs the hdrp_math.h of the same version"
@@ -103,6 +111,7 @@ HDRP_API hdrp_result hdrp_gpu_vk_begin_frame(hdrp_gpu_vk* gpu, uint32_t frame);
 #include "hdrp_gpu_vk_cull.h"
 #include "hdrp_gpu_vk_env.h"
 #include "hdrp_gpu_vk_light.h"
+#include "hdrp_gpu_vk_shadow.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -177,7 +186,13 @@ static void hdrp_i_gpu_vk_check(hdrp_gpu_vk_functions* vk, const hdrp_gpu_vk_des
     hdrp_i_gpu_vk_need(missing, properties.apiVersion >= VK_API_VERSION_1_1, "Vulkan 1.1");
     hdrp_i_gpu_vk_need(missing, (hdrp_i_gpu_vk_queue_flags(vk, desc) & VK_QUEUE_COMPUTE_BIT) != 0u,
                        "VK_QUEUE_COMPUTE_BIT in the queue family");
-    if (passes & (HDRP_GPU_VK_PASS_FGD | HDRP_GPU_VK_PASS_LIGHT)) {
+    if (passes & HDRP_GPU_VK_PASS_LISTS) {
+        hdrp_i_gpu_vk_need(missing,
+                           properties.limits.maxPerStageDescriptorStorageBuffers >=
+                               HDRP_I_GPU_VK_LIST_BUFFERS,
+                           "maxPerStageDescriptorStorageBuffers of 10");
+    }
+    if (passes & (HDRP_GPU_VK_PASS_FGD | HDRP_GPU_VK_PASS_LIGHT | HDRP_GPU_VK_PASS_SHADOW)) {
         hdrp_i_gpu_vk_need(missing,
                            desc->features && desc->features->shaderStorageImageWriteWithoutFormat,
                            "shaderStorageImageWriteWithoutFormat");
@@ -261,6 +276,7 @@ static VkResult hdrp_i_gpu_vk_make(hdrp_gpu_vk* gpu)
     r = r == VK_SUCCESS ? hdrp_i_gpu_vk_make_shaders(gpu, hdrp_i_gpu_vk_cull_shader) : r;
     r = r == VK_SUCCESS ? hdrp_i_gpu_vk_make_shaders(gpu, hdrp_i_gpu_vk_env_shader) : r;
     r = r == VK_SUCCESS ? hdrp_i_gpu_vk_make_shaders(gpu, hdrp_i_gpu_vk_light_shader) : r;
+    r = r == VK_SUCCESS ? hdrp_i_gpu_vk_make_shaders(gpu, hdrp_i_gpu_vk_shadow_shader) : r;
     for (i = 0u; i < gpu->desc.frames && r == VK_SUCCESS; ++i) {
         r = hdrp_i_gpu_vk_pool(gpu, &gpu->pools[i]);
     }

@@ -27,10 +27,12 @@ extern "C" {
 #endif
 
 /* Passes, or-ed. What is not asked for is not created, and needs nothing of the device. */
-#define HDRP_GPU_VK_PASS_FGD   1u
-#define HDRP_GPU_VK_PASS_DEPTH 2u
-#define HDRP_GPU_VK_PASS_LIGHT 32u
-#define HDRP_GPU_VK_PASS_ALL   35u
+#define HDRP_GPU_VK_PASS_FGD    1u
+#define HDRP_GPU_VK_PASS_DEPTH  2u
+#define HDRP_GPU_VK_PASS_LISTS  4u /* with depth */
+#define HDRP_GPU_VK_PASS_LIGHT  32u
+#define HDRP_GPU_VK_PASS_SHADOW 64u
+#define HDRP_GPU_VK_PASS_ALL    103u
 
 /* Room for the compute shaders of all passes. */
 #define HDRP_GPU_VK_SHADERS_MAX 32u
@@ -66,7 +68,7 @@ typedef struct hdrp_gpu_vk_desc {
     const VkPhysicalDeviceFeatures* features; /* that were enabled; NULL: none. Not kept */
     uint32_t passes;                          /* HDRP_GPU_VK_PASS_...; 0: all */
     uint32_t frames;                          /* [0,HDRP_GPU_VK_FRAMES_MAX] 0: 2 */
-    uint32_t frame_passes; /* [0,65536] passes that are recorded in a frame, at most; 0: 64 */
+    uint32_t frame_passes; /* [0,65536] sets that passes take in a frame, at most; 0: 64 */
     const VkAllocationCallbacks* allocation; /* NULL: the driver's. Must outlive the context */
     VkPipelineCache pipeline_cache;          /* used by hdrp_gpu_vk_init alone */
     hdrp_gpu_vk_memory memory;               /* NULL: an allocation of its own for each resource */
@@ -233,11 +235,17 @@ extern "C" {
 #define HDRP_I_GPU_VK_BINDINGS_MAX 24u
 
 /* Places in hdrp_gpu_vk.pipelines. */
-#define HDRP_I_GPU_VK_FGD      0u
-#define HDRP_I_GPU_VK_DEPTH    1u
-#define HDRP_I_GPU_VK_CLASSIFY 16u
-#define HDRP_I_GPU_VK_DISPATCH 17u
-#define HDRP_I_GPU_VK_DEFERRED 18u
+#define HDRP_I_GPU_VK_FGD           0u
+#define HDRP_I_GPU_VK_DEPTH         1u
+#define HDRP_I_GPU_VK_CULL_PROJECT  2u
+#define HDRP_I_GPU_VK_CULL_COARSE   3u
+#define HDRP_I_GPU_VK_CULL_TILES    4u
+#define HDRP_I_GPU_VK_CULL_PIXELS   5u
+#define HDRP_I_GPU_VK_CULL_CLUSTERS 6u
+#define HDRP_I_GPU_VK_CLASSIFY      16u
+#define HDRP_I_GPU_VK_DISPATCH      17u
+#define HDRP_I_GPU_VK_DEFERRED      18u
+#define HDRP_I_GPU_VK_SHADOW        28u
 
 /* A compute shader. Each letter of `bindings` is the type of one, in order from 0 on: s storage
  * image, t sampled image, c sampled image with a sampler, b storage buffer, u uniform buffer. */
@@ -659,6 +667,43 @@ HDRP_I_GPU_VK_FN void hdrp_i_gpu_vk_dispatch(const hdrp_gpu_vk* gpu, VkCommandBu
                                  shader->push_bytes, push);
     }
     gpu->vk.CmdDispatch(commands, groups_x, groups_y, 1u);
+}
+
+/* All that was written in some stages is seen in others. */
+HDRP_I_GPU_VK_FN void hdrp_i_gpu_vk_barrier(const hdrp_gpu_vk* gpu, VkCommandBuffer commands,
+                                            VkPipelineStageFlags from, VkAccessFlags written,
+                                            VkPipelineStageFlags to, VkAccessFlags seen)
+{
+    VkMemoryBarrier all;
+    memset(&all, 0, sizeof all);
+    all.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+    all.srcAccessMask = written;
+    all.dstAccessMask = seen;
+    gpu->vk.CmdPipelineBarrier(commands, from, to, 0u, 1u, &all, 0u, NULL, 0u, NULL);
+}
+
+/* Between the shaders of a pass. */
+HDRP_I_GPU_VK_FN void hdrp_i_gpu_vk_next(const hdrp_gpu_vk* gpu, VkCommandBuffer commands)
+{
+    hdrp_i_gpu_vk_barrier(gpu, commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
+                          VK_ACCESS_SHADER_WRITE_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
+                          VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
+}
+
+/* Parameters of a pass, of at most 65536 bytes, for its shaders; what was recorded before has read
+ * the old ones. */
+HDRP_I_GPU_VK_FN void hdrp_i_gpu_vk_update(const hdrp_gpu_vk* gpu, VkCommandBuffer commands,
+                                           VkBuffer buffer, VkDeviceSize offset, size_t bytes,
+                                           const void* data)
+{
+    hdrp_i_gpu_vk_barrier(gpu, commands, gpu->shader_stages | VK_PIPELINE_STAGE_TRANSFER_BIT,
+                          VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT,
+                          VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT);
+    gpu->vk.CmdUpdateBuffer(commands, buffer, offset, bytes, data);
+    hdrp_i_gpu_vk_barrier(gpu, commands, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                          VK_ACCESS_TRANSFER_WRITE_BIT, gpu->shader_stages,
+                          VK_ACCESS_UNIFORM_READ_BIT | VK_ACCESS_SHADER_READ_BIT |
+                              VK_ACCESS_SHADER_WRITE_BIT);
 }
 
 /* What a pass writes is ordered after everything that shaders and copies did to it before, or seen

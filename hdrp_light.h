@@ -53,7 +53,7 @@
  *       solid_angle_spot candela_from_lumen_spot lumen_from_candela_spot pyramid_shape_make
  *       pyramid_attenuation box_attenuation
  *   light record: type affects sign directional point spot pyramid box
- *   evaluation: eval_directional eval_point eval_spot eval_pyramid eval_box eval
+ *   evaluation: eval_directional eval_point eval_spot eval_pyramid eval_box eval sine variance
  * >>end */
 #ifndef HDRP_LIGHT_H
 #define HDRP_LIGHT_H

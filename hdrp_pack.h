@@ -34,7 +34,8 @@
  *   normal buffer: normal_buffer_encode normal_buffer_decode
  *   SSS buffer: sss_buffer_encode sss_buffer_decode
  *   GBuffer: gbuffer_features gbuffer_texel_features gbuffer_losses gbuffer_supports gbuffer_encode
- *       gbuffer_decode gbuffer_decode_extra gbuffer_texel_from_targets gbuffer_targets_from_texel
+ *       gbuffer_decode_features gbuffer_decode gbuffer_decode_extra gbuffer_texel_from_targets
+ *       gbuffer_targets_from_texel
  * >>end */
 #ifndef HDRP_PACK_H
 #define HDRP_PACK_H

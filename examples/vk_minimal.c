@@ -5,6 +5,7 @@
  * is recorded into one command buffer of ours. Prints a few numbers, and fails where they are not
  * those of the CPU. Exit status 77: there is no device. */
 #define HDRP_BRDF_IMPLEMENTATION
+#define HDRP_CULL_IMPLEMENTATION
 #define HDRP_GPU_VK_IMPLEMENTATION
 #include "hdrp_brdf.h"
 #include "hdrp_gpu_vk.h"

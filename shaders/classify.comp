@@ -78,13 +78,12 @@ void main()
     }
     barrier();
     if (gl_LocalInvocationIndex == 0u) {
-        uint frame = lighting.lights.w & ~HDRP_GPU_VK_WORD_SPLIT;
-        uint word = materials == 0u ? 0u : materials | listed | frame;
+        uint needed = hdrp_gpu_vk_word_of_tile(materials, listed, lighting.lights.w);
         uint found = HDRP_CULL_VARIANT_NONE;
         for (uint k = 0u; k < push.x; ++k) {
-            found = hdrp_cull_first_covering(found, k, variants[k], word);
+            found = hdrp_cull_first_covering(found, k, variants[k], needed);
         }
-        words[tile] = word;
-        chosen[tile] = word == 0u ? HDRP_CULL_VARIANT_EMPTY : found;
+        words[tile] = needed;
+        chosen[tile] = needed == 0u ? HDRP_CULL_VARIANT_EMPTY : found;
     }
 }

@@ -15,7 +15,8 @@
 //     HDRP_LIGHTING_SET      descriptor set of what is declared below; 0
 //     HDRP_LIGHTING_BINDING  its first binding; 0. It takes those up to + 11
 //     HDRP_SHADOW_ATLAS      it has declared float light_shadow(uint shadow_index, vec3 position,
-//                            vec3 normal, vec3 l, float distance_m): what lights see, in [0,1]
+//                            vec3 normal, vec3 l, float distance_m): what lights see, in [0,1];
+//                            shaders/shadow_map.glsl, included before, does
 //
 // Bindings, counted from HDRP_LIGHTING_BINDING; all must be valid, and a stand-in of the same kind
 // serves for what HDRP_WORD or the parameters leave out:
@@ -25,7 +26,7 @@
 //     2  storage buffer  tiles             7  samplerCube  specular, linear between levels too
 //     3  storage buffer  cells             8  samplerCube  irradiance, linear
 //     4  storage buffer  entries           9  texture2D    shadow mask
-//     5  storage buffer  masks             10, 11          for light_shadow
+//     5  storage buffer  masks             10, 11          those of shadow_map.glsl
 //
 // Then for each pixel:
 //
@@ -123,7 +124,9 @@ bool hdrp_i_is_lit(hdrp_brdf_data d, vec3 l)
 float hdrp_i_shadow(hdrp_light light, hdrp_light_incident i, hdrp_brdf_data d, vec3 position)
 {
 #ifdef HDRP_SHADOW_ATLAS
-    if (hdrp_i_has(HDRP_GPU_VK_WORD_SHADOW) && (light.bits.x & HDRP_LIGHT_FEATURE_SHADOW) != 0u) {
+    bool has_atlas = hdrp_i_has(HDRP_GPU_VK_WORD_SHADOW) &&
+                     (lighting.lights.w & HDRP_GPU_VK_WORD_SHADOW) != 0u;
+    if (has_atlas && (light.bits.x & HDRP_LIGHT_FEATURE_SHADOW) != 0u) {
         return light_shadow(light.bits.z, position, d.normal, i.l, i.distance_m);
     }
 #endif
@@ -196,8 +199,11 @@ void hdrp_i_add_lights(inout hdrp_lit_surface r, hdrp_brdf_data d, hdrp_brdf_lit
             uint entry = entries[at];
             light = hdrp_cull_entry_index(entry);
             visible = hdrp_i_covers(covered, at, entry) ? 1.0 : 0.0;
-        } else if (hdrp_i_has(HDRP_GPU_VK_WORD_SHADOW_MASK) && light == lighting.lights.z) {
-            visible = texelFetch(shadow_mask, ivec2(pixel), 0).x;
+        } else if (hdrp_i_has(HDRP_GPU_VK_WORD_SHADOW_MASK)) {
+            uint channel = light - lighting.lights.z; // huge for those in front
+            visible = channel < lighting.picture.w
+                          ? texelFetch(shadow_mask, ivec2(pixel), 0)[channel]
+                          : 1.0;
         }
         if (visible > 0.0 && hdrp_light_affects(lights[light], layers) != 0u) {
             hdrp_light_incident i = hdrp_i_incident(lights[light], position);

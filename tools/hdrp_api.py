@@ -406,7 +406,8 @@ def matching(code, start, pair):
 
 # A topic that outgrew its header stands in one of its own and keeps the names: topic -> header.
 SPLIT_FROM = {"brdf_lobes": "brdf", "env_image": "env", "cull_volume": "cull",
-              "cull_blocker": "cull", "cull_grid": "cull", "cull_variant": "cull", "gpu_vk_core": "gpu_vk",
+              "cull_blocker": "cull", "cull_grid": "cull", "cull_tile": "cull",
+              "cull_variant": "cull", "gpu_vk_core": "gpu_vk",
               "gpu_vk_cull": "gpu_vk", "gpu_vk_env": "gpu_vk", "gpu_vk_light": "gpu_vk",
               "gpu_vk_shadow": "gpu_vk"}
 

@@ -1,6 +1,5 @@
 /* cull_harness.c - see cull_harness.h.
  * SPDX-License-Identifier: MIT */
-#define HDRP_CULL_IMPLEMENTATION
 #include "cull_harness.h"
 
 #include <inttypes.h>

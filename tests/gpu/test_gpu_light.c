@@ -52,13 +52,13 @@ enum { KIND_OTHER, KIND_DEFERRED = 5, KIND_STRAY = 12 };
 
 typedef struct scene_desc {
     uint32_t width, height, tile;
-    uint32_t lights;       /* of lists */
-    uint32_t directional;  /* of none */
-    uint32_t slices;       /* of lists; 0: 1 */
+    uint32_t lights;      /* of lists */
+    uint32_t directional; /* of none */
+    uint32_t slices;      /* of lists; 0: 1 */
     uint32_t list_flags;
-    uint32_t types;        /* of lights: HDRP_GPU_VK_WORD_LIGHTS bits; 0: all */
-    uint32_t materials;    /* features of materials: mask */
-    bool sky_only, plain;  /* plain: no features, no kinds, no RT4, no environment */
+    uint32_t types;       /* of lights: HDRP_GPU_VK_WORD_LIGHTS bits; 0: all */
+    uint32_t materials;   /* features of materials: mask */
+    bool sky_only, plain; /* plain: no features, no kinds, no RT4, no environment */
     bool split, environment, harmonics, table, masked;
     bool srgb; /* RT0 has the format that it is made for */
 } scene_desc;
@@ -67,7 +67,7 @@ typedef struct scene {
     scene_desc desc;
     hdrp_cull_camera camera;
     hdrp_pack_gbuffer_texel* texels;
-    float* depths;      /* metres */
+    float* depths; /* metres */
     uint8_t* kinds;
     uint8_t* occlusion;
     uint8_t* shadow;
@@ -146,9 +146,9 @@ static void make_pixels(scene* s)
             s->depths[i] = d->sky_only || number() < 0.05f || block % 9u == 7u
                                ? s->camera.right_far.w
                                : between(3.0f, 20.0f);
-            s->kinds[i] = (uint8_t)(number() < 0.9f && block % 9u != 5u
-                                        ? KIND_DEFERRED | (below(8u) << 3)
-                                        : KIND_STRAY);
+            s->kinds[i] =
+                (uint8_t)(number() < 0.9f && block % 9u != 5u ? KIND_DEFERRED | (below(8u) << 3)
+                                                              : KIND_STRAY);
             s->occlusion[i] = (uint8_t)below(256u);
             s->shadow[i] = number() < 0.3f ? 0u : (uint8_t)below(256u);
         }
@@ -220,11 +220,10 @@ static void make_lists(scene* s)
     for (uint32_t i = 0; i < d->lights; ++i) {
         shapes[i] = hdrp_cull_shape_from_light(s->lights[i]);
     }
-    assert_int_equal(hdrp_cull_set_init(&s->set, capacity, s->set_memory,
-                                        hdrp_cull_set_memory_size(capacity)),
-                     HDRP_OK);
-    assert_int_equal(hdrp_cull_init(&s->lists, &desc, s->list_memory,
-                                    hdrp_cull_memory_size(&desc)),
+    assert_int_equal(
+        hdrp_cull_set_init(&s->set, capacity, s->set_memory, hdrp_cull_set_memory_size(capacity)),
+        HDRP_OK);
+    assert_int_equal(hdrp_cull_init(&s->lists, &desc, s->list_memory, hdrp_cull_memory_size(&desc)),
                      HDRP_OK);
     assert_int_equal(hdrp_cull_set_begin(&s->set, &s->camera, d->width, d->height, d->lights),
                      HDRP_OK);
@@ -257,8 +256,8 @@ static void make_environment(scene* s)
     image.height = HEIGHT;
     image.kind = HDRP_ENV_LATLONG;
     s->env_memory = aligned(hdrp_env_memory_size(&desc));
-    assert_int_equal(
-        hdrp_env_init(&s->env, &desc, s->env_memory, hdrp_env_memory_size(&desc)), HDRP_OK);
+    assert_int_equal(hdrp_env_init(&s->env, &desc, s->env_memory, hdrp_env_memory_size(&desc)),
+                     HDRP_OK);
     assert_int_equal(hdrp_env_bake(&s->env, &image), HDRP_OK);
     assert_int_equal(hdrp_env_project_sh(&s->env, &s->sh), HDRP_OK);
 }
@@ -352,7 +351,7 @@ static uint32_t* cpu_words(const scene* s)
     assert_int_equal(hdrp_cull_material_tiles(&image, s->desc.tile, 0, tiles.w, words), HDRP_OK);
     assert_int_equal(hdrp_cull_light_features(&s->lists, &s->set, 0, count, lights), HDRP_OK);
     for (uint32_t i = 0; i < count; ++i) {
-        lights[i] &= HDRP_GPU_VK_WORD_LIGHTS | HDRP_GPU_VK_WORD_SHADOW | HDRP_GPU_VK_WORD_NEGATIVE;
+        lights[i] &= HDRP_GPU_VK_WORD_LIGHTS | HDRP_GPU_VK_WORD_NEGATIVE; /* no atlas: no shadow */
         lights[i] |= frame_word(s);
     }
     assert_int_equal(hdrp_cull_combine_features(words, lights, words, 0, count), HDRP_OK);
@@ -395,16 +394,15 @@ static cpu_pixel shade(const scene* s, uint32_t x, uint32_t y)
     hdrp_pack_gbuffer g = hdrp_pack_gbuffer_targets_from_texel(s->texels[at]);
     hdrp_brdf_data d = hdrp_pack_gbuffer_decode(g, targets);
     hdrp_pack_gbuffer_extra e = hdrp_pack_gbuffer_decode_extra(g, targets);
-    hdrp_v3 offset = hdrp_cull_offset_of_pixel(s->camera, (float)x + 0.5f, (float)y + 0.5f,
-                                               (float)s->desc.width, (float)s->desc.height,
-                                               s->depths[at]);
+    hdrp_v3 offset =
+        hdrp_cull_offset_of_pixel(s->camera, (float)x + 0.5f, (float)y + 0.5f, (float)s->desc.width,
+                                  (float)s->desc.height, s->depths[at]);
     hdrp_v3 place = hdrp_v3_add(offset, hdrp_v3_from_v4(s->camera.eye_near));
     hdrp_v3 v = hdrp_cull_direction_to_eye(s->camera, offset);
     float n_dot_v = hdrp_saturate(hdrp_v3_dot(d.normal, v));
-    hdrp_brdf_fgd fgd =
-        s->desc.table ? hdrp_brdf_fgd_lookup(fgd_of_cpu, (int)FGD_SIZE, n_dot_v,
-                                             d.perceptual_roughness)
-                      : hdrp_brdf_fgd_fast(n_dot_v, d.perceptual_roughness);
+    hdrp_brdf_fgd fgd = s->desc.table ? hdrp_brdf_fgd_lookup(fgd_of_cpu, (int)FGD_SIZE, n_dot_v,
+                                                             d.perceptual_roughness)
+                                      : hdrp_brdf_fgd_fast(n_dot_v, d.perceptual_roughness);
     hdrp_brdf_lit_view w;
     cpu_pixel out = {0};
     if (d.features & HDRP_BRDF_FEATURE_TRANSMISSION) {
@@ -416,16 +414,15 @@ static cpu_pixel shade(const scene* s, uint32_t x, uint32_t y)
     for (uint32_t i = 0; i < s->desc.lights + s->desc.directional; ++i) {
         hdrp_light_incident in = hdrp_light_eval(s->lights[i], place);
         float variance = hdrp_light_variance(hdrp_light_sine(s->lights[i], in));
-        float visible = s->desc.masked && i == s->desc.lights ? (float)s->shadow[at] / 255.0f
-                                                              : 1.0f;
+        float visible =
+            s->desc.masked && i == s->desc.lights ? (float)s->shadow[at] / 255.0f : 1.0f;
         hdrp_brdf_lit lit;
         if (!hdrp_light_affects(s->lights[i], e.light_layers)) {
             continue;
         }
         visible *= hdrp_light_sign(s->lights[i]);
         lit = hdrp_brdf_lit_eval(d, hdrp_brdf_lit_view_widened(w, variance), in.l, d.features);
-        out.diffuse =
-            hdrp_v3_mad(out.diffuse, hdrp_v3_mul(in.illuminance, lit.diffuse), visible);
+        out.diffuse = hdrp_v3_mad(out.diffuse, hdrp_v3_mul(in.illuminance, lit.diffuse), visible);
         out.specular =
             hdrp_v3_mad(out.specular, hdrp_v3_mul(in.illuminance, lit.specular), visible);
     }
@@ -568,15 +565,14 @@ static void make_buffers(const scene* s, on_device* o)
         filled_buffer(l->cells, tiles * l->desc.slice_count * sizeof *l->cells);
     o->buffers[BUFFER_ENTRIES] = filled_buffer(l->entries, entries * sizeof *l->entries);
     if (l->masks) {
-        o->buffers[BUFFER_MASKS] = filled_buffer(
-            l->masks, entries * hdrp_cull_mask_words(l->grid) * sizeof *l->masks);
+        o->buffers[BUFFER_MASKS] =
+            filled_buffer(l->masks, entries * hdrp_cull_mask_words(l->grid) * sizeof *l->masks);
     }
-    assert_int_equal(
-        hdrp_gpu_vk_buffer_create(&gpu, HDRP_GPU_VK_LIGHTING_BYTES,
-                                  VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
-                                      VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                                  VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, "params", &o->params),
-        HDRP_OK);
+    assert_int_equal(hdrp_gpu_vk_buffer_create(
+                         &gpu, HDRP_GPU_VK_LIGHTING_BYTES,
+                         VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                         VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, "params", &o->params),
+                     HDRP_OK);
 }
 
 static void set_lighting(const scene* s, on_device* o)
@@ -607,7 +603,8 @@ static void set_lighting(const scene* s, on_device* o)
     l->light_count += l->light_count == 0u;
     l->first_directional = s->desc.lights;
     l->directional_count = s->desc.directional;
-    l->masked_directional = s->desc.lights;
+    l->first_masked = s->desc.lights;
+    l->masked_count = 1;
     l->shadow_mask = s->desc.masked ? o->images[IMAGE_SHADOW].view : VK_NULL_HANDLE;
     l->fgd = s->desc.table ? o->fgd.view : VK_NULL_HANDLE;
     l->fgd_size = FGD_SIZE;
@@ -645,8 +642,7 @@ static on_device to_device(const scene* s)
         for (size_t i = 0; i < pixels_of(s); ++i) {
             linear[i] = hdrp_pack_linear_from_srgba8(t[i].rt0);
         }
-        make_image(s, &o, 0, VK_FORMAT_R32G32B32A32_SFLOAT, sizeof *linear, linear,
-                   sizeof *linear);
+        make_image(s, &o, 0, VK_FORMAT_R32G32B32A32_SFLOAT, sizeof *linear, linear, sizeof *linear);
         free(linear);
     }
     make_image(s, &o, 1, VK_FORMAT_R8G8B8A8_UNORM, 4, &t->rt1, sizeof *t);
@@ -663,10 +659,11 @@ static on_device to_device(const scene* s)
         make_cube(&s->env.irradiance, &o.cubes[1], &o.cube_uploads[1]);
     }
     if (s->desc.table) {
-        assert_int_equal(hdrp_gpu_vk_image_create(
-                             &gpu, VK_FORMAT_R32G32_SFLOAT, FGD_SIZE, FGD_SIZE,
-                             VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT, "fgd", &o.fgd),
-                         HDRP_OK);
+        assert_int_equal(
+            hdrp_gpu_vk_image_create(&gpu, VK_FORMAT_R32G32_SFLOAT, FGD_SIZE, FGD_SIZE,
+                                     VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT, "fgd",
+                                     &o.fgd),
+            HDRP_OK);
     }
     o.color = output_image(s);
     o.diffuse = output_image(s);
@@ -762,9 +759,9 @@ static void expect_classified(const scene_desc* desc, const uint32_t* masks, uin
     made.count = count;
     memcpy(made.words, masks, count * sizeof *masks);
     assert_int_equal(hdrp_cull_assign_variants(&variants, words, chosen, 0, tiles), HDRP_OK);
-    assert_int_equal(hdrp_cull_build_dispatch(&dispatch, chosen, s.lists.grid.tiles.z,
-                                              s.lists.grid.tiles.w),
-                     HDRP_OK);
+    assert_int_equal(
+        hdrp_cull_build_dispatch(&dispatch, chosen, s.lists.grid.tiles.z, s.lists.grid.tiles.w),
+        HDRP_OK);
     commands = begin(&s, &o);
     assert_int_equal(hdrp_gpu_vk_classify(&gpu, commands, &o.lighting, &made, &o.tiles), HDRP_OK);
     back[0] = copied(commands, &o.tiles.words);
@@ -916,8 +913,8 @@ static void expect_lit(const char* name, const scene_desc* desc,
         difference = hdrp_v3_sub(sum, expected);
         error += (double)hdrp_v3_dot(difference, difference);
         reference += (double)hdrp_v3_dot(expected, expected);
-        worst = fmax(worst, (double)(hdrp_v3_length(difference) /
-                                     (hdrp_v3_length(expected) + 0.05f)));
+        worst =
+            fmax(worst, (double)(hdrp_v3_length(difference) / (hdrp_v3_length(expected) + 0.05f)));
         ++lit;
     }
     if (lit > 0) {
@@ -945,14 +942,32 @@ static void pixels_are_lit_as_on_the_cpu(void** state)
          {.width = 97, .height = 61, .tile = 16, .lights = 50, .types = 0xcu, .plain = true}},
         {"no lights", {.width = 40, .height = 30, .tile = 16, .materials = 31u}},
         {"every material",
-         {.width = 120, .height = 75, .tile = 16, .lights = 40, .directional = 2,
-          .materials = 31u, .environment = true, .table = true, .masked = true}},
+         {.width = 120,
+          .height = 75,
+          .tile = 16,
+          .lights = 40,
+          .directional = 2,
+          .materials = 31u,
+          .environment = true,
+          .table = true,
+          .masked = true}},
         {"in parts",
-         {.width = 75, .height = 50, .tile = 8, .lights = 30, .directional = 1,
-          .materials = 31u, .environment = true, .harmonics = true, .split = true,
+         {.width = 75,
+          .height = 50,
+          .tile = 8,
+          .lights = 30,
+          .directional = 1,
+          .materials = 31u,
+          .environment = true,
+          .harmonics = true,
+          .split = true,
           .list_flags = HDRP_CULL_PIXELS | HDRP_CULL_BLOCKS}},
         {"a thousand lights",
-         {.width = 64, .height = 48, .tile = 16, .lights = 1000, .materials = 16u,
+         {.width = 64,
+          .height = 48,
+          .tile = 16,
+          .lights = 1000,
+          .materials = 16u,
           .list_flags = HDRP_CULL_PIXELS | HDRP_CULL_MASKS}},
         {"slices",
          {.width = 64, .height = 48, .tile = 32, .lights = 100, .materials = 31u, .slices = 16}},

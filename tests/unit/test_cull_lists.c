@@ -119,7 +119,7 @@ static const char* list_at(const scene* s, uint32_t x, uint32_t y, float z, uint
 
 static void sizes_that_are_out_of_range_need_no_memory(void** state)
 {
-    hdrp_cull_desc good = desc_of(0u, 0u), d;
+    hdrp_cull_desc good = desc_of(0u, 0u), d, complete = good;
     (void)state;
     assert_int_equal(hdrp_cull_set_memory_size(0u), 0u);
     assert_int_equal(hdrp_cull_set_memory_size(HDRP_CULL_SHAPES_MAX + 1u), 0u);
@@ -134,7 +134,8 @@ static void sizes_that_are_out_of_range_need_no_memory(void** state)
     d = good;                                                                                      \
     d.member = value;                                                                              \
     assert_int_equal(hdrp_cull_memory_size(&d), 0u);                                               \
-    assert_int_equal(hdrp_cull_scratch_size(&d), 0u)
+    assert_int_equal(hdrp_cull_scratch_size(&d), 0u);                                              \
+    assert_int_equal(hdrp_cull_desc_complete(&d, &complete), HDRP_ERROR_BAD_ARGUMENT)
     EXPECT_BAD(width_px, 0u);
     EXPECT_BAD(height_px, 0u);
     EXPECT_BAD(width_px, HDRP_CULL_SIZE_MAX + 1u);
@@ -158,6 +159,10 @@ static void sizes_that_are_out_of_range_need_no_memory(void** state)
     d.tile_width_px = d.tile_height_px = 1u;
     d.slice_count = HDRP_CULL_SLICES_MAX;
     assert_int_equal(hdrp_cull_memory_size(&d), 0u);
+    assert_int_equal(hdrp_cull_desc_complete(&d, &complete), HDRP_ERROR_TOO_LARGE);
+    assert_int_equal(hdrp_cull_desc_complete(NULL, &complete), HDRP_ERROR_NULL_POINTER);
+    assert_int_equal(hdrp_cull_desc_complete(&good, NULL), HDRP_ERROR_NULL_POINTER);
+    assert_memory_equal(&complete, &good, sizeof good);
     assert_int_equal(hdrp_cull_scratch_size(&d), 0u);
 }
 
@@ -273,6 +278,8 @@ static void zeros_are_the_defaults(void** state)
     assert_int_equal(lists.desc.entry_capacity, 2048u);
     assert_int_equal(lists.grid.tiles.z, 4u);
     assert_int_equal(lists.grid.tiles.w, 2u);
+    assert_int_equal(hdrp_cull_desc_complete(&d, &d), HDRP_OK);
+    assert_memory_equal(&d, &lists.desc, sizeof d);
     free(memory);
 }
 

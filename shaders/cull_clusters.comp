@@ -1,0 +1,255 @@
+#version 450
+// Lists of tiles with slices: clusters. A group makes those of a tile. Candidates go through shared
+// memory in batches; a thread has some slices, and picks from each batch what reaches them.
+// header: hdrp_gpu_vk_cull.h
+// contraction: none
+#extension GL_GOOGLE_include_directive : require
+#define FRAME_ACCESS readonly
+#define SHAPE_ACCESS readonly
+#define FILLS_LISTS
+#include "cull_lists.glsl"
+
+#define BATCH     1024
+#define OF_THREAD 4 // slices: HDRP_CULL_SLICES_MAX / GROUP
+
+layout(local_size_x = GROUP) in;
+
+shared uint hits[BATCH]; // candidate of the batch | category << 10 | first slice << 12 | last << 20
+shared uint needed;      // entries of all hits
+shared uint dropped;
+shared uint scan[GROUP];
+
+uint tile_index;
+uint first_candidate;
+uint candidate_count;
+float scale;
+Window window;
+
+// The slices of a candidate, as hits keep them; false where it misses the tile.
+bool ask(uint candidate, out uint hit, out uint order, out uint index)
+{
+    index = coarse[first_candidate + candidate];
+    Seen s = seen_shapes[index];
+    hdrp_cull_interval r = depths_in(window, index, s, false);
+    order = s.order;
+    hit = 0u;
+    if (r.nearest > r.farthest) {
+        return false;
+    }
+    hit = candidate % BATCH | category_of(s) << 10 |
+          hdrp_cull_slice(frame.grid, scale, r.nearest) << 12 |
+          hdrp_cull_slice(frame.grid, scale, r.farthest) << 20;
+    return true;
+}
+
+uint slices_of(uint hit)
+{
+    return 1u + (hit >> 20) - (hit >> 12 & 255u);
+}
+
+// The hits of a batch in order; returns how many. With a limit those without room are left out.
+uint collect(uint batch, bool limited)
+{
+    uint end = min((batch + 1u) * BATCH, candidate_count);
+    uint n = 0u;
+    for (uint from = batch * BATCH; from < end; from += GROUP) {
+        uint candidate = from + gl_LocalInvocationIndex;
+        uint hit, order, index, total;
+        bool found = candidate < end && ask(candidate, hit, order, index);
+        if (found && limited && !is_kept(order, index)) {
+            atomicAdd(dropped, 1u); // what cells say is read before they are asked once more
+            found = false;
+        }
+        uint at = n + place_among(found, total);
+        if (found) {
+            hits[at] = hit;
+        }
+        n += total;
+    }
+    barrier();
+    return n;
+}
+
+uint candidate_of(uint batch, uint hit)
+{
+    return coarse[first_candidate + batch * BATCH + (hit & (BATCH - 1u))];
+}
+
+// Adds the entries of some hits to what is needed.
+void add_needed(uint n)
+{
+    uint sum = 0u;
+    for (uint h = gl_LocalInvocationIndex; h < n; h += GROUP) {
+        sum += slices_of(hits[h]);
+    }
+    if (sum > 0u) {
+        atomicAdd(needed, sum);
+    }
+}
+
+// Adds the entries of some hits to the sums of their digits.
+void add_digits(uint batch, uint n, int level)
+{
+    for (uint h = gl_LocalInvocationIndex; h < n; h += GROUP) {
+        uint index = candidate_of(batch, hits[h]);
+        uint order = seen_shapes[index].order;
+        if (leads_to_end(order, index, level)) {
+            atomicAdd(sums[digit_of(order, index, level)], slices_of(hits[h]));
+        }
+    }
+}
+
+// The slices of a thread follow each other.
+uint first_slice()
+{
+    return gl_LocalInvocationIndex * ((frame.grid.cells.x + GROUP - 1u) / GROUP);
+}
+
+uint end_slice()
+{
+    uint of_thread = (frame.grid.cells.x + GROUP - 1u) / GROUP;
+    return min(first_slice() + of_thread, frame.grid.cells.x);
+}
+
+// Counts of the four categories, 16 bits each.
+uvec2 one_more(uvec2 counts, uint category)
+{
+    uint one = 1u << ((category & 1u) << 4);
+    return counts + (category < 2u ? uvec2(one, 0u) : uvec2(0u, one));
+}
+
+uint sum_of(uvec2 counts)
+{
+    return (counts.x & 0xffffu) + (counts.x >> 16) + (counts.y & 0xffffu) + (counts.y >> 16);
+}
+
+bool is_in(uint slice, uint end, uint hit)
+{
+    return slice < end && slice >= (hit >> 12 & 255u) && slice <= hit >> 20;
+}
+
+void count_slices(uint n, inout uvec2 counts[OF_THREAD])
+{
+    uint first = first_slice();
+    uint end = end_slice();
+    for (uint h = 0u; h < n; ++h) {
+        uint hit = hits[h];
+        for (uint j = 0u; j < OF_THREAD; ++j) {
+            if (is_in(first + j, end, hit)) {
+                counts[j] = one_more(counts[j], hit >> 10 & 3u);
+            }
+        }
+    }
+}
+
+// Where the entries of each thread begin, after those of the threads before it.
+uint place_of_thread(uint own)
+{
+    uint thread = gl_LocalInvocationIndex;
+    scan[thread] = own;
+    barrier();
+    for (uint step = 1u; step < GROUP; step <<= 1) {
+        uint before = thread >= step ? scan[thread - step] : 0u;
+        barrier();
+        scan[thread] += before;
+        barrier();
+    }
+    return scan[thread] - own;
+}
+
+void write_entries(uint batch, uint n, inout uint next[OF_THREAD])
+{
+    uint first = first_slice();
+    uint end = end_slice();
+    for (uint h = 0u; h < n; ++h) {
+        uint hit = hits[h];
+        for (uint j = 0u; j < OF_THREAD; ++j) {
+            if (is_in(first + j, end, hit)) {
+                entries[next[j]++] = candidate_of(batch, hit) | 0xffff0000u;
+            }
+        }
+    }
+}
+
+// Writes the cells of a thread; next is where the entries of each begin.
+void write_cells(uvec2 counts[OF_THREAD], out uint next[OF_THREAD])
+{
+    uint own = 0u;
+    for (uint j = 0u; j < OF_THREAD; ++j) {
+        own += sum_of(counts[j]);
+    }
+    uint at = tile_index * frame.grid.cells.y + place_of_thread(own);
+    uint first = first_slice();
+    for (uint k = first; k < end_slice(); ++k) {
+        cells[tile_index * frame.grid.cells.x + k] = uvec4(at, counts[k - first], dropped);
+        next[k - first] = at;
+        at += sum_of(counts[k - first]);
+    }
+    if (gl_LocalInvocationIndex == 0u) {
+        dropped_of_tile[tile_index] = dropped;
+    }
+}
+
+// Candidates are asked again in each phase, but for those of a single batch, whose hits stay.
+#define PHASE_MEASURE 0
+#define PHASE_LEVEL   1 // and the ones after it, where entries do not fit
+#define PHASE_COUNT   (PHASE_LEVEL + DIGITS)
+#define PHASE_WRITE   (PHASE_COUNT + 1)
+
+void main()
+{
+    uvec2 tile = gl_WorkGroupID.xy;
+    uvec2 begin = tile * frame.grid.tiles.xy;
+    uint n = 0u;
+    uvec2 counts[OF_THREAD] = uvec2[OF_THREAD](uvec2(0u), uvec2(0u), uvec2(0u), uvec2(0u));
+    uint next[OF_THREAD];
+    tile_index = tile.y * frame.grid.tiles.z + tile.x;
+    first_candidate = candidates_of(tile);
+    candidate_count = coarse[first_candidate - 1u];
+    scale = tiles[tile_index].z;
+    window = window_of(begin, begin + frame.grid.tiles.xy, frame.pixel.z, frame.pixel.w);
+    uint batches = (candidate_count + BATCH - 1u) / BATCH;
+    bool limited = false;
+    if (gl_LocalInvocationIndex == 0u) {
+        needed = 0u;
+        dropped = 0u;
+    }
+    begin_room();
+    barrier();
+    for (int phase = PHASE_MEASURE; phase <= PHASE_WRITE; ++phase) {
+        if (phase == PHASE_LEVEL) {
+            limited = needed > frame.grid.cells.y;
+            phase = limited ? phase : PHASE_COUNT;
+        }
+        bool level = phase >= PHASE_LEVEL && phase < PHASE_COUNT;
+        bool is_new = phase == PHASE_MEASURE || batches > 1u || (limited && phase == PHASE_COUNT);
+        if (level) {
+            begin_level();
+        }
+        if (phase == PHASE_WRITE) {
+            write_cells(counts, next);
+        }
+        if (phase == PHASE_COUNT && gl_LocalInvocationIndex == 0u) {
+            dropped = 0u;
+        }
+        barrier();
+        for (uint b = 0u; b < batches; ++b) {
+            if (is_new) {
+                n = collect(b, limited && phase >= PHASE_COUNT);
+            }
+            if (phase == PHASE_MEASURE) {
+                add_needed(n);
+            } else if (level) {
+                add_digits(b, n, phase - PHASE_LEVEL);
+            } else if (phase == PHASE_COUNT) {
+                count_slices(n, counts);
+            } else {
+                write_entries(b, n, next);
+            }
+            barrier();
+        }
+        if (level) {
+            end_level(phase - PHASE_LEVEL);
+        }
+    }
+}

@@ -1,0 +1,223 @@
+// Which blocks of a tile, and which of its pixels, the hits of a chunk reach. Boxes around the
+// blocks decide most of it; pixels are asked where they do not.
+#define PIXELS_MAX     1024 // of a tile, whole blocks
+#define MASK_WORDS_MAX 32
+
+layout(binding = 10) uniform texture2D depths;
+
+shared float pixel_z[PIXELS_MAX]; // block by block, each row by row; negative: sky
+shared vec2 block_depths[HDRP_CULL_BLOCK_COUNT];
+shared uint undecided[GROUP];     // blocks of each hit whose pixels are to be asked
+shared uint mask_words[GROUP * MASK_WORDS_MAX];
+shared uint is_read;
+
+uvec2 tile_begin;
+
+uint pixels_of_block()
+{
+    return frame.grid.cells.z * frame.grid.cells.w;
+}
+
+// Where the pixel at a place of pixel_z is in its tile.
+uvec2 pixel_at(uint place)
+{
+    uint block = place / pixels_of_block();
+    uint rest = place % pixels_of_block();
+    return uvec2((block & 3u) * frame.grid.cells.z + rest % frame.grid.cells.z,
+                 (block >> 2) * frame.grid.cells.w + rest / frame.grid.cells.z);
+}
+
+hdrp_v3 place_of(uvec2 pixel, float z)
+{
+    return hdrp_cull_pixel_in_view(frame.camera, frame.pixel.xy,
+                                   float(tile_begin.x) + 0.5 + float(pixel.x),
+                                   float(frame.picture.y) - float(tile_begin.y) - 0.5 -
+                                       float(pixel.y),
+                                   z);
+}
+
+void begin_pixels(uvec2 begin)
+{
+    tile_begin = begin;
+    if (gl_LocalInvocationIndex == 0u) {
+        is_read = 0u;
+    }
+    barrier();
+}
+
+void read_pixels()
+{
+    for (uint p = gl_LocalInvocationIndex; p < HDRP_CULL_BLOCK_COUNT * pixels_of_block();
+         p += GROUP) {
+        uvec2 in_tile = pixel_at(p);
+        uvec2 at = tile_begin + in_tile;
+        float z = -1.0;
+        // Blocks may be wider than the tile, and reach beyond the picture.
+        if (all(lessThan(in_tile, frame.grid.tiles.xy)) && all(lessThan(at, frame.picture.xy))) {
+            float texel = texelFetch(depths, ivec2(at), 0).x;
+            z = frame.picture.w != 0u ? hdrp_view_depth(frame.device, texel) : texel;
+            z = hdrp_cull_opaque_depth(z, frame.pixel.z, frame.pixel.w);
+        }
+        pixel_z[p] = z;
+    }
+    barrier();
+    if (gl_LocalInvocationIndex < HDRP_CULL_BLOCK_COUNT) {
+        float nearest = HDRP_FLT_MAX;
+        float farthest = -1.0;
+        for (uint k = 0u; k < pixels_of_block(); ++k) {
+            float z = pixel_z[gl_LocalInvocationIndex * pixels_of_block() + k];
+            nearest = z >= 0.0 && z < nearest ? z : nearest;
+            farthest = z > farthest ? z : farthest;
+        }
+        block_depths[gl_LocalInvocationIndex] = vec2(nearest, farthest);
+    }
+    barrier();
+}
+
+hdrp_cull_box block_box(uint block)
+{
+    hdrp_v2 size = hdrp_v2(frame.pixel.x * float(frame.grid.cells.z),
+                           frame.pixel.y * float(frame.grid.cells.w));
+    return hdrp_cull_block_box(window.tile.window, size, block,
+                               hdrp_cull_interval(block_depths[block].x, block_depths[block].y),
+                               frame.camera.forward_orthographic.w);
+}
+
+// Whether a ball contains one of four pixels, which most do that reach any.
+bool contains_a_corner(vec4 ball)
+{
+    float nearest2 = HDRP_FLT_MAX;
+    for (uint k = 0u; k < 4u; ++k) { // in the middle of the blocks at the corners
+        uint block = (k >> 1) * 12u + (k & 1u) * 3u;
+        uint place = block * pixels_of_block() + (frame.grid.cells.w / 2u) * frame.grid.cells.z +
+                     frame.grid.cells.z / 2u;
+        if (pixel_z[place] >= 0.0) {
+            hdrp_v3 p = place_of(pixel_at(place), pixel_z[place]);
+            nearest2 = hdrp_min(hdrp_cull_distance_sq(ball, p), nearest2);
+        }
+    }
+    return nearest2 <= ball.w * ball.w;
+}
+
+void fill_mask(uint hit, uint word)
+{
+    for (uint k = 0u; k < hdrp_cull_mask_words(frame.grid); ++k) {
+        mask_words[hit * MASK_WORDS_MAX + k] = word;
+    }
+}
+
+// All pixels of a block, those of sky too.
+void note_block(uint hit, uint block)
+{
+    uint begin = block * pixels_of_block();
+    uint last = begin + pixels_of_block() - 1u;
+    for (uint k = begin >> 5; k <= last >> 5; ++k) {
+        uint low = k == begin >> 5 ? begin & 31u : 0u;
+        uint high = k == last >> 5 ? last & 31u : 31u;
+        mask_words[hit * MASK_WORDS_MAX + k] |= (0xffffffffu >> (31u - high + low)) << low;
+    }
+}
+
+// What boxes say of a hit: the blocks that it reaches for sure, and those that are undecided.
+void ask_boxes(uint hit)
+{
+    Seen s = seen_shapes[hits[hit]];
+    bool ball = is_ball(s);
+    bool all = (frame.picture.z & FLAG_BLOCKS) != 0u;
+    bool has_masks = (frame.picture.z & FLAG_MASKS) != 0u;
+    uint reached = 0u;
+    undecided[hit] = 0u;
+    if (ball && !all && contains_a_corner(s.ball)) {
+        return; // blocks is 0xffff: one pixel decides for all of them
+    }
+    if (has_masks) {
+        fill_mask(hit, 0u);
+    }
+    for (uint b = 0u; b < HDRP_CULL_BLOCK_COUNT; ++b) {
+        reached |= hdrp_cull_box_in_ball(block_box(b), s.ball) << b;
+    }
+    uint inside = ball ? reached >> 16 : 0u; // inside its ball is inside a shape only if it is one
+    for (uint b = 0u; has_masks && b < HDRP_CULL_BLOCK_COUNT; ++b) {
+        if ((inside >> b & 1u) != 0u) {
+            note_block(hit, b);
+        }
+    }
+    undecided[hit] = all || inside == 0u ? reached & 0xffffu & ~inside : 0u;
+    blocks[hit] = inside;
+}
+
+// A thread asks its pixels about a hit.
+void ask_own_pixels(uint hit)
+{
+    hdrp_cull_shape shape = shapes[hits[hit]];
+    bool has_masks = (frame.picture.z & FLAG_MASKS) != 0u;
+    for (uint p = gl_LocalInvocationIndex; p < HDRP_CULL_BLOCK_COUNT * pixels_of_block();
+         p += GROUP) {
+        uint block = p / pixels_of_block();
+        if ((undecided[hit] >> block & 1u) == 0u || pixel_z[p] < 0.0) {
+            continue;
+        }
+        if (hdrp_cull_shape_contains(shape, place_of(pixel_at(p), pixel_z[p])) > 0.0) {
+            atomicOr(blocks[hit], 1u << block);
+            if (has_masks) {
+                atomicOr(mask_words[hit * MASK_WORDS_MAX + (p >> 5)], 1u << (p & 31u));
+            }
+        }
+    }
+}
+
+// The blocks of the hits of a chunk.
+void ask_pixels(uint n)
+{
+    uint thread = gl_LocalInvocationIndex;
+    bool all = (frame.picture.z & FLAG_BLOCKS) != 0u;
+    bool around = false;
+    if (thread < n) {
+        Seen s = seen_shapes[hits[thread]];
+        hdrp_cull_box box =
+            hdrp_cull_window_box(window.tile.window, hdrp_cull_interval(info.x, info.y),
+                                 frame.camera.forward_orthographic.w);
+        around = is_ball(s) && hdrp_cull_box_in_ball(box, s.ball) >> 16 != 0u;
+        undecided[thread] = 0u;
+        if (around && (frame.picture.z & FLAG_MASKS) != 0u) {
+            fill_mask(thread, 0xffffffffu);
+        }
+    }
+    uint open; // hits that do not contain the whole of what the tile shows
+    place_among(thread < n && !around, open);
+    if (open == 0u) {
+        return;
+    }
+    if (is_read == 0u) { // for all threads: what they wait for below is between
+        read_pixels();
+    }
+    barrier();
+    if (thread == 0u) {
+        is_read = 1u;
+    }
+    if (thread < n && !around) {
+        ask_boxes(thread);
+    }
+    barrier();
+    for (uint h = 0u; h < n; ++h) {
+        if (undecided[h] != 0u) {
+            ask_own_pixels(h);
+        }
+    }
+    barrier();
+    if (!all && thread < n && blocks[thread] != 0u) {
+        blocks[thread] = 0xffffu;
+    }
+    barrier();
+}
+
+void write_mask(uint entry, uint hit)
+{
+    if ((frame.picture.z & FLAG_MASKS) == 0u) {
+        return;
+    }
+    uint words = hdrp_cull_mask_words(frame.grid);
+    for (uint k = 0u; k < words; ++k) {
+        masks[entry * words + k] = mask_words[hit * MASK_WORDS_MAX + k];
+    }
+}

@@ -1,0 +1,43 @@
+#version 450
+// Shapes in view space, their planes and their bounds on the screen: hdrp_cull_set_project. And
+// tiles as hdrp_cull_begin leaves them.
+// header: hdrp_gpu_vk_cull.h
+// contraction: none
+#extension GL_GOOGLE_include_directive : require
+#define PROJECTS
+#define FRAME_ACCESS
+#define SHAPE_ACCESS writeonly
+#include "cull_lists.glsl"
+
+layout(local_size_x = GROUP) in;
+layout(std430, binding = 4) readonly buffer World { hdrp_cull_shape world[]; };
+layout(std430, binding = 5) writeonly buffer Tiles { vec4 tiles[]; };
+
+void main()
+{
+    uint i = gl_GlobalInvocationID.x;
+    if (i < frame.grid.tiles.z * frame.grid.tiles.w) { // as long as no depth is known
+        tiles[i] = vec4(frame.pixel.z, frame.pixel.w, frame.grid.series.w, 0.0);
+    }
+    if (i >= frame.numbers.x) {
+        return;
+    }
+    hdrp_cull_shape s = hdrp_cull_shape_in_view(world[i], frame.camera);
+    hdrp_cull_bounds b = hdrp_cull_shape_bounds(s, frame.camera, float(frame.picture.x),
+                                                float(frame.picture.y));
+    uint category = hdrp_cull_shape_category(s);
+    uint count = hdrp_cull_shape_plane_count(s);
+    // The bits of floats that are not negative are ordered as the floats are.
+    seen_shapes[i] = Seen(b.rect_px, hdrp_cull_shape_ball(s), b.nearest, b.farthest,
+                          hdrp_cull_shape_kind(s) | category << 8 | count << 16,
+                          ~s.bits.w & 0x7fffffffu);
+    shapes[i] = s;
+    if (b.rect_px.x > b.rect_px.z) {
+        return; // not seen: nobody asks for its planes
+    }
+    atomicOr(frame.found.x, 1u << category);
+    for (uint k = 0u; k < count; ++k) {
+        planes[i * PLANES_STRIDE + k] =
+            hdrp_cull_shape_plane(s, k, frame.camera.forward_orthographic.w);
+    }
+}
