@@ -21,6 +21,7 @@ static const struct {
     {"anisotropy", RD_FEATURE_ANISOTROPY},
     {"iridescence", RD_FEATURE_IRIDESCENCE},
     {"refraction", RD_FEATURE_REFRACTION},
+    {"glass_rays", RD_FEATURE_GLASS_RAYS},
     {"transmission", RD_FEATURE_TRANSMISSION},
     {"tangents", RD_FEATURE_TANGENTS},
     {"normal_maps", RD_FEATURE_NORMAL_MAPS},

@@ -113,8 +113,11 @@ static void finish(const rd_sub_frame* s, layer* l, const rd_shade_point* p,
     l->transmitted_perceptual_roughness = shaded->transmitted_perceptual_roughness;
     l->bends = p->data.volume_thickness_m > 0.0f;
     l->sees_sky = false;
-    if (l->bends) {
+    if (l->bends && rd_has(s, RD_FEATURE_GLASS_RAYS)) {
         follow(s, p, shaded->transmitted_direction, l);
+    } else if (l->bends) {
+        l->source_direction = shaded->transmitted_direction;
+        l->source = hdrp_v3_mad(p->position, l->source_direction, p->data.volume_thickness_m);
     }
 }
 

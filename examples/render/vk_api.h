@@ -34,6 +34,7 @@
     X(CmdBeginRenderPass)                                                                          \
     X(CmdBindDescriptorSets)                                                                       \
     X(CmdBindPipeline)                                                                             \
+    X(CmdClearAttachments)                                                                         \
     X(CmdClearColorImage)                                                                          \
     X(CmdCopyBuffer)                                                                               \
     X(CmdCopyBufferToImage)                                                                        \

@@ -6,6 +6,7 @@
 
 /* A variable of the environment that asks for validation layers, and their synchronisation checks. */
 #define VALIDATE   "HDRP_RENDER_VALIDATE"
+#define MESSAGES_MAX 10
 #define VALIDATION "VK_LAYER_KHRONOS_validation"
 
 bool rd_vk_check(rd_vk_device* d, VkResult result, const char* what)
@@ -37,8 +38,9 @@ print_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity, VkDebugUtilsMessa
 {
     (void)severity;
     (void)type;
-    ++((rd_vk_device*)user)->messages;
-    fprintf(stderr, "validation: %s\n", data->pMessage);
+    if (((rd_vk_device*)user)->messages++ < MESSAGES_MAX) {
+        fprintf(stderr, "validation: %s\n", data->pMessage);
+    }
     return VK_FALSE;
 }
 
@@ -181,7 +183,7 @@ static bool has_what_is_needed(rd_vk_device* d)
     if (!has_format(d, VK_FORMAT_B10G11R11_UFLOAT_PACK32, VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT)) {
         return rd_fail(d->report, device, "cannot draw to R11G11B10");
     }
-    if (d->properties.limits.maxColorAttachments < 6u ||
+    if (d->properties.limits.maxColorAttachments < 7u ||
         d->properties.limits.maxPerStageDescriptorSamplers < 24u) {
         return rd_fail(d->report, device, "has too few colour attachments or samplers");
     }

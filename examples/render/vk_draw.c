@@ -114,8 +114,7 @@ static void draw(rd_vk* vk, rd_vk_program program, uint32_t mesh, uint32_t first
     vkCmdDraw(commands, count * 3, 1, first * 3, 0);
 }
 
-/* `light`: the set of lighting with lists of clusters, for layers, or without. */
-static void bind_frame(rd_vk* vk, int light)
+void rd_vk_bind_frame(rd_vk* vk, int light)
 {
     vk->bound = VK_NULL_HANDLE;
     vkCmdBindDescriptorSets(vk->device.commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
@@ -150,7 +149,7 @@ static bool is_chosen(const rd_vk* vk, const rd_material* m, rd_vk_choice choice
 void rd_vk_draw_meshes(rd_vk* vk, rd_vk_program program, rd_vk_choice choice)
 {
     const rd_scene* scene = vk->scene.scene;
-    bind_frame(vk, 0);
+    rd_vk_bind_frame(vk, 0);
     for (int i = 0; i < scene->mesh_count; ++i) {
         const rd_mesh* m = &scene->meshes[i];
         const rd_material* material = &scene->materials[m->material];
@@ -162,7 +161,7 @@ void rd_vk_draw_meshes(rd_vk* vk, rd_vk_program program, rd_vk_choice choice)
 
 void rd_vk_draw_layers(rd_vk* vk, rd_vk_program program)
 {
-    bind_frame(vk, 1);
+    rd_vk_bind_frame(vk, 1);
     for (uint32_t i = 0; i < vk->order.run_count; ++i) {
         const rd_vk_batch* run = &vk->order.runs[i];
         draw(vk, program, run->mesh, run->first, run->count, true);
@@ -172,7 +171,7 @@ void rd_vk_draw_layers(rd_vk* vk, rd_vk_program program)
 void rd_vk_draw_sky(rd_vk* vk)
 {
     VkPipeline p = pipeline_of(vk, RD_VK_PROGRAM_SKY);
-    bind_frame(vk, 0);
+    rd_vk_bind_frame(vk, 0);
     if (p) {
         vkCmdBindPipeline(vk->device.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, p);
         vkCmdDraw(vk->device.commands, 3, 1, 0, 0);

@@ -206,6 +206,7 @@ void rd_vk_close(rd_vk* vk)
     if (device) {
         vkDeviceWaitIdle(device);
         rd_vk_programs_free(vk);
+        rd_vk_casters_free(vk);
         vkDestroyDescriptorPool(device, vk->pool, NULL);
         vkDestroyDescriptorSetLayout(device, vk->frame_layout, NULL);
         rd_vk_light_free(&vk->light, &vk->device);
@@ -217,6 +218,11 @@ void rd_vk_close(rd_vk* vk)
     }
     rd_vk_device_close(&vk->device);
     free(vk);
+}
+
+unsigned rd_vk_messages(const rd_vk* vk)
+{
+    return vk->device.messages;
 }
 
 const char* rd_vk_device_name(const rd_vk* vk)
@@ -272,7 +278,7 @@ static void gbuffer(rd_vk* vk)
     rd_vk_pass_begin(&vk->raster, &vk->device, RD_VK_PASS_GBUFFER);
     rd_vk_draw_meshes(vk, RD_VK_PROGRAM_GBUFFER, RD_VK_ALL);
     rd_vk_pass_end(&vk->device);
-    for (int i = RD_VK_RT0; i <= RD_VK_KINDS; ++i) {
+    for (int i = RD_VK_RT0; i <= RD_VK_NORMALS; ++i) {
         rd_vk_layout(&vk->device, &vk->raster.targets[i], VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                      VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     }
@@ -410,6 +416,20 @@ static bool sub_frame(rd_vk* vk, const rd_sub_frame* s)
     return true;
 }
 
+/* Once for all samples: cascades do not move with them. */
+static bool shadows(rd_vk* vk, const rd_renderer* r)
+{
+    rd_vk_shadow* s = &vk->light.shadow;
+    if (!s->present) {
+        return true;
+    }
+    if (!rd_vk_shadow_aim(s, &vk->device, r, vk->light.lists.items) || !rd_vk_begin(&vk->device)) {
+        return false;
+    }
+    rd_vk_draw_shadows(vk);
+    return !vk->device.report->failed && rd_vk_run(&vk->device);
+}
+
 bool rd_vk_render(rd_vk* vk, rd_renderer* r, const rd_camera* camera)
 {
     size_t values = (size_t)r->width * (size_t)r->height * 4;
@@ -419,6 +439,7 @@ bool rd_vk_render(rd_vk* vk, rd_renderer* r, const rd_camera* camera)
     s.r = r;
     memset(r->film, 0, values * sizeof *r->film);
     rd_vk_order_sort(vk, camera);
+    ok = !is_lit(r) || shadows(vk, r);
     for (int i = 0; ok && i < r->spp; ++i) {
         s.index = (uint32_t)i;
         s.jitter = rd_camera_jitter(s.index, r->options->seed);

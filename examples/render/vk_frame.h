@@ -53,7 +53,7 @@ struct rd_vk {
     VkDescriptorSetLayout frame_layout;
     VkDescriptorPool pool;
     VkDescriptorSet frame_set;
-    VkPipeline programs[RD_VK_PROGRAM_COUNT], bound;
+    VkPipeline programs[RD_VK_PROGRAM_COUNT], casters[2], bound;
     rd_vk_frame values;
 };
 
@@ -75,9 +75,15 @@ typedef enum rd_vk_choice {
 } rd_vk_choice;
 
 void rd_vk_programs_free(rd_vk* vk);
+/* `light`: which set of lighting; 1 is that of layers. */
+void rd_vk_bind_frame(rd_vk* vk, int light);
 void rd_vk_draw_meshes(rd_vk* vk, rd_vk_program program, rd_vk_choice choice);
 /* The sorted triangles. */
 void rd_vk_draw_layers(rd_vk* vk, rd_vk_program program);
 void rd_vk_draw_sky(rd_vk* vk);
+
+/* vk_casters.c */
+void rd_vk_draw_shadows(rd_vk* vk);
+void rd_vk_casters_free(rd_vk* vk);
 
 #endif

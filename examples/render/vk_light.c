@@ -85,7 +85,7 @@ static bool make_sky(rd_vk_light* l, rd_vk_device* d)
            (!shown || make_seen(d, &e->seen, cube ? &l->sky_cube : &l->sky));
 }
 
-/* >>tables and records */
+/* >>tables and parameters */
 
 static bool make_fgd(rd_vk_light* l, rd_vk_device* d)
 {
@@ -104,23 +104,16 @@ static bool make_fgd(rd_vk_light* l, rd_vk_device* d)
            (rd_vk_mark(d, "bake FGD table"), rd_vk_run(d));
 }
 
-static bool make_records(rd_vk_light* l, rd_vk_device* d, const rd_vk_raster* raster)
+static bool make_params(rd_vk_light* l, rd_vk_device* d, const rd_vk_raster* raster)
 {
-    static const hdrp_light dark; /* there has to be one */
-    const rd_lights* lights = &l->lighting->lights;
+    const VkBufferUsageFlags usage =
+        VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
     const size_t cells = (raster->width / TILE_PX + 1u) * (raster->height / TILE_PX + 1u);
     void* zeros = calloc(cells, sizeof(hdrp_u32x4));
-    bool ok =
-        zeros && rd_vk_buffer_fill(d, zeros, cells * sizeof(hdrp_u32x4), &l->nothing);
+    bool ok = zeros && rd_vk_buffer_fill(d, zeros, cells * sizeof(hdrp_u32x4), &l->nothing);
     free(zeros);
-    return ok && rd_vk_buffer_fill(d, lights->count ? lights->items : &dark,
-                             (lights->count ? lights->count : 1) * sizeof dark, &l->records) &&
-           rd_vk_mapped_make(d, HDRP_GPU_VK_LIGHTING_BYTES,
-                             VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                             &l->params[0]) &&
-           rd_vk_mapped_make(d, HDRP_GPU_VK_LIGHTING_BYTES,
-                             VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                             &l->params[1]);
+    return ok && rd_vk_mapped_make(d, HDRP_GPU_VK_LIGHTING_BYTES, usage, &l->params[0]) &&
+           rd_vk_mapped_make(d, HDRP_GPU_VK_LIGHTING_BYTES, usage, &l->params[1]);
 }
 
 /* >>variants of deferred lighting: plain materials, and all that this scene has */
@@ -158,35 +151,27 @@ static VkDescriptorType type_of(uint32_t binding)
     if (binding == RD_VK_BIND_PARAMS) {
         return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     }
-    if (binding <= RD_VK_BIND_MASKS) {
+    if (binding <= RD_VK_BIND_MASKS || binding == RD_VK_BIND_VIEWS) {
         return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     }
     return binding == RD_VK_BIND_SUN_MASK || binding == RD_VK_BIND_KINDS ||
-                   binding == RD_VK_BIND_DEPTH
+                   binding == RD_VK_BIND_DEPTH || binding == RD_VK_BIND_ATLAS
                ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE
                : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-}
-
-/* Those of shadow maps are left free. */
-static bool is_bound(uint32_t binding)
-{
-    return binding != 10u && binding != 11u;
 }
 
 bool rd_vk_light_layout_make(rd_vk_light* l, rd_vk_device* d)
 {
     VkDescriptorSetLayoutBinding bindings[RD_VK_BIND_COUNT];
     VkDescriptorSetLayoutCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO, .pBindings = bindings};
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO, .bindingCount = RD_VK_BIND_COUNT,
+        .pBindings = bindings};
     memset(bindings, 0, sizeof bindings);
     for (uint32_t i = 0; i < RD_VK_BIND_COUNT; ++i) {
-        if (is_bound(i)) {
-            VkDescriptorSetLayoutBinding* b = &bindings[info.bindingCount++];
-            b->binding = i;
-            b->descriptorType = type_of(i);
-            b->descriptorCount = 1;
-            b->stageFlags = VK_SHADER_STAGE_FRAGMENT_BIT;
-        }
+        bindings[i].binding = i;
+        bindings[i].descriptorType = type_of(i);
+        bindings[i].descriptorCount = 1;
+        bindings[i].stageFlags = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
     }
     return rd_vk_check(d, vkCreateDescriptorSetLayout(d->device, &info, NULL, &l->layout),
                        "a layout of descriptors");
@@ -195,8 +180,8 @@ bool rd_vk_light_layout_make(rd_vk_light* l, rd_vk_device* d)
 static bool allocate_sets(rd_vk_light* l, rd_vk_device* d)
 {
     const VkDescriptorPoolSize sizes[4] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2},
-                                           {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 10},
-                                           {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 6},
+                                           {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 12},
+                                           {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 8},
                                            {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 14}};
     const VkDescriptorPoolCreateInfo pool = {.sType =
                                                  VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
@@ -227,6 +212,7 @@ static VkDescriptorImageInfo image_info(const rd_vk_light* l, const rd_vk_raster
             : binding == RD_VK_BIND_SKY        ? &l->sky
             : binding == RD_VK_BIND_SKY_CUBE   ? &l->sky_cube
             : binding == RD_VK_BIND_BEHIND     ? &l->behind
+            : binding == RD_VK_BIND_ATLAS      ? &l->shadow.atlas
             : binding == RD_VK_BIND_KINDS      ? &raster->targets[RD_VK_KINDS]
             : binding == RD_VK_BIND_DEPTH      ? &raster->targets[RD_VK_DEPTH]
                                                : NULL;
@@ -235,6 +221,8 @@ static VkDescriptorImageInfo image_info(const rd_vk_light* l, const rd_vk_raster
     }
     if (binding == RD_VK_BIND_FGD && l->fgd.view) {
         info.imageView = l->fgd.view;
+    } else if (binding == RD_VK_BIND_SUN_MASK && l->shadow.visibility.view) {
+        info.imageView = l->shadow.visibility.view;
     } else if (image && image->base.view) {
         info.imageView = image->base.view;
     }
@@ -247,10 +235,13 @@ static VkDescriptorImageInfo image_info(const rd_vk_light* l, const rd_vk_raster
 static VkDescriptorBufferInfo buffer_info(const rd_vk_light* l, int which, uint32_t binding)
 {
     const rd_vk_grid* g = &l->grids[which];
-    const hdrp_gpu_vk_range records = {l->records.buffer, 0};
+    const hdrp_gpu_vk_range records = {l->lists.records.buffer, 0};
+    const hdrp_gpu_vk_range views = {
+        l->shadow.present ? l->shadow.buffer.buffer.buffer : l->nothing.buffer, 0};
     const hdrp_gpu_vk_range params = {l->params[which].buffer.buffer, 0};
     const hdrp_gpu_vk_range ranges[6] = {params, records, g->tiles, g->cells, g->entries, g->masks};
-    VkDescriptorBufferInfo info = {ranges[binding].buffer, ranges[binding].offset, VK_WHOLE_SIZE};
+    const hdrp_gpu_vk_range* at = binding == RD_VK_BIND_VIEWS ? &views : &ranges[binding];
+    VkDescriptorBufferInfo info = {at->buffer, at->offset, VK_WHOLE_SIZE};
     return info;
 }
 
@@ -264,16 +255,14 @@ static void write_set(const rd_vk_light* l, rd_vk_device* d, const rd_vk_raster*
                                       .descriptorCount = 1};
         write.dstSet = l->sets[which];
         write.descriptorType = type_of(i);
-        if (i <= RD_VK_BIND_MASKS) {
+        if (i <= RD_VK_BIND_MASKS || i == RD_VK_BIND_VIEWS) {
             buffer = buffer_info(l, which, i);
             write.pBufferInfo = &buffer;
         } else {
             image = image_info(l, raster, i);
             write.pImageInfo = &image;
         }
-        if (is_bound(i)) {
-            vkUpdateDescriptorSets(d->device, 1, &write, 0, NULL);
-        }
+        vkUpdateDescriptorSets(d->device, 1, &write, 0, NULL);
     }
 }
 
@@ -305,6 +294,32 @@ static void make_empty_grid(rd_vk_light* l, const rd_vk_raster* raster, int whic
     g->tiles = g->cells = g->entries = g->masks = nothing;
 }
 
+static void take_grid(rd_vk_light* l, int which)
+{
+    const hdrp_gpu_vk_lists* lists = &l->lists.grids[which];
+    rd_vk_grid* g = &l->grids[which];
+    g->tiles.buffer = lists->tiles.buffer;
+    g->cells.buffer = lists->cells.buffer;
+    g->entries.buffer = lists->entries.buffer;
+    g->flags = lists->desc.flags;
+}
+
+/* Shadows of directional lights come from an image, but those of layers, and with lists. */
+static void describe_shadows(const rd_vk_light* l, hdrp_gpu_vk_lighting* d, int which)
+{
+    if (!l->shadow.present) {
+        return;
+    }
+    d->shadow_views.buffer = l->shadow.buffer.buffer.buffer;
+    d->shadow_view_count = l->shadow.view_count;
+    d->shadow_atlas = l->shadow.atlas.base.view;
+    if (which == 0 && l->shadow.masked > 0u) {
+        d->shadow_mask = l->shadow.visibility.view;
+        d->first_masked = l->lists.listed;
+        d->masked_count = l->shadow.masked;
+    }
+}
+
 static void describe(rd_vk_light* l, const rd_vk_raster* raster, int which)
 {
     hdrp_gpu_vk_lighting* d = &l->desc[which];
@@ -322,10 +337,11 @@ static void describe(rd_vk_light* l, const rd_vk_raster* raster, int which)
     d->kinds = raster->targets[RD_VK_KINDS].base.view;
     d->kind_mask = 255u;
     d->kind_lit = RD_PIXEL_DEFERRED;
-    d->lights.buffer = l->records.buffer;
+    d->lights.buffer = l->lists.records.buffer;
     d->light_count = l->lighting->lights.count ? l->lighting->lights.count : 1u;
     d->fgd = l->fgd.view;
     d->fgd_size = RD_FGD_SIZE;
+    describe_shadows(l, d, which);
     d->specular = l->specular.base.view;
     d->specular_levels = l->specular.levels;
     d->irradiance = l->irradiance.base.view;
@@ -343,12 +359,16 @@ bool rd_vk_light_make(rd_vk_light* l, rd_vk_device* d, const rd_renderer* r,
     if (!rd_vk_sampler_make(d, VK_FILTER_LINEAR, clamp, clamp, &l->clamped) ||
         !rd_vk_sampler_make(d, VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_REPEAT, clamp,
                             &l->around) ||
-        !make_sky(l, d) || !make_fgd(l, d) || !make_records(l, d, raster) || !make_variants(l, d) ||
+        !make_sky(l, d) || !make_fgd(l, d) || !rd_vk_lists_make(&l->lists, d, r, &l->shadow) ||
+        !make_params(l, d, raster) || !make_variants(l, d) ||
         !make_behind(l, d, raster) || !allocate_sets(l, d)) {
         return false;
     }
     for (int i = 0; i < 2; ++i) {
         make_empty_grid(l, raster, i);
+        if (l->lists.ready) {
+            take_grid(l, i);
+        }
         describe(l, raster, i);
         write_set(l, d, raster, i);
     }
@@ -363,7 +383,8 @@ void rd_vk_light_free(rd_vk_light* l, rd_vk_device* d)
     hdrp_gpu_vk_tiles_destroy(&d->gpu, &l->tiles);
     hdrp_gpu_vk_variants_destroy(&d->gpu, &l->variants);
     hdrp_gpu_vk_image_destroy(&d->gpu, &l->fgd);
-    hdrp_gpu_vk_buffer_destroy(&d->gpu, &l->records);
+    rd_vk_lists_free(&l->lists, d);
+    rd_vk_shadow_free(&l->shadow, d);
     hdrp_gpu_vk_buffer_destroy(&d->gpu, &l->nothing);
     rd_vk_mapped_free(d, &l->params[0]);
     rd_vk_mapped_free(d, &l->params[1]);
@@ -379,27 +400,65 @@ void rd_vk_light_free(rd_vk_light* l, rd_vk_device* d)
 
 /* >>recording */
 
+static bool resolve(rd_vk_light* l, rd_vk_device* d, const rd_vk_raster* raster,
+                    const hdrp_cull_camera* camera)
+{
+    hdrp_gpu_vk_shadow s;
+    memset(&s, 0, sizeof s);
+    s.width_px = raster->width;
+    s.height_px = raster->height;
+    s.depth = raster->targets[RD_VK_DEPTH].base.view;
+    s.depth_layout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
+    s.normals = raster->targets[RD_VK_NORMALS].base.view;
+    s.atlas = l->shadow.atlas.base.view;
+    s.flags = HDRP_GPU_VK_SHADOW_PLAIN_NORMALS;
+    s.device = &l->device_depth;
+    s.camera = *camera;
+    s.views = l->shadow.buffer.buffer.buffer;
+    s.view_count = l->shadow.view_count;
+    memcpy(s.cascades, l->shadow.cascades, sizeof s.cascades);
+    if (!rd_vk_check_hdrp(
+            d, hdrp_gpu_vk_resolve_shadows(&d->gpu, d->commands, &s, &l->shadow.visibility),
+            "shadows")) {
+        return false;
+    }
+    rd_vk_mark(d, "directional shadows");
+    return true;
+}
+
+/* Without lists all lights count as those that reach everything. */
+static void set_lights(rd_vk_light* l, hdrp_gpu_vk_lighting* desc, int which)
+{
+    const rd_vk_lists* lists = &l->lists;
+    bool lit = (l->lighting->features & RD_FEATURE_LIGHTS) != 0;
+    desc->first_directional = lists->ready ? lists->listed : 0u;
+    desc->directional_count = lists->ready ? lists->directional : lists->listed + lists->directional;
+    if (!lit || (lists->ready && which == 1)) {
+        desc->directional_count = 0u;
+    }
+}
+
 bool rd_vk_light_begin(rd_vk_light* l, rd_vk_device* d, const rd_vk_raster* raster,
                        const hdrp_cull_camera* camera, hdrp_v2 depths, float exposure)
 {
-    bool lit = (l->lighting->features & RD_FEATURE_LIGHTS) != 0;
-    bool ok = true;
-    (void)raster;
+    bool ok;
     l->device_depth = camera->forward_orthographic.w != 0.0f
                           ? hdrp_depth_params_orthographic(depths.x, depths.y, 1u)
                           : hdrp_depth_params_perspective(depths.x, HDRP_CULL_FAR_INFINITE, 1u);
+    ok = rd_vk_lists_build(&l->lists, d, raster, camera, &l->device_depth);
+    ok = ok && (l->shadow.masked == 0u || resolve(l, d, raster, camera));
     for (int i = 0; ok && i < 2; ++i) {
         hdrp_gpu_vk_lighting* desc = &l->desc[i];
         const rd_vk_grid* g = &l->grids[i];
         desc->camera = *camera;
-        desc->grid = g->grid;
+        desc->grid = l->lists.ready ? l->lists.grids[i].grid : g->grid;
         desc->list_flags = g->flags;
         desc->tiles = g->tiles;
         desc->cells = g->cells;
         desc->entries = g->entries;
         desc->masks = g->masks;
-        desc->directional_count = lit ? l->lighting->lights.count : 0u;
         desc->exposure = exposure;
+        set_lights(l, desc, i);
         ok = rd_vk_check_hdrp(d, hdrp_gpu_vk_write_lighting(&d->gpu, d->commands, desc),
                               "parameters of lighting");
     }

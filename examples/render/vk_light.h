@@ -3,7 +3,7 @@
 #define RD_VK_LIGHT_H
 
 #include "render.h"
-#include "vk_raster.h"
+#include "vk_lists.h"
 
 /* Bindings of the set of lighting: those of shaders/light_loop.glsl, and behind them our own. */
 #define RD_VK_BIND_PARAMS     0u
@@ -16,6 +16,8 @@
 #define RD_VK_BIND_SPECULAR   7u
 #define RD_VK_BIND_IRRADIANCE 8u
 #define RD_VK_BIND_SUN_MASK   9u
+#define RD_VK_BIND_VIEWS      10u
+#define RD_VK_BIND_ATLAS      11u
 #define RD_VK_BIND_SKY        12u
 #define RD_VK_BIND_SKY_CUBE   13u
 #define RD_VK_BIND_BEHIND     14u
@@ -32,7 +34,9 @@ typedef struct rd_vk_grid {
 
 typedef struct rd_vk_light {
     const rd_lighting* lighting;
-    hdrp_gpu_vk_buffer records, nothing; /* a buffer of zeros stands for lists that are not there */
+    rd_vk_lists lists;
+    rd_vk_shadow shadow;
+    hdrp_gpu_vk_buffer nothing; /* zeros stand for lists that are not there */
     rd_vk_mapped params[2];              /* of opaque surfaces, of layers */
     hdrp_gpu_vk_image fgd;
     rd_vk_image specular, irradiance, sky, sky_cube;

@@ -22,6 +22,12 @@ void rd_vk_close(rd_vk* vk)
     (void)vk;
 }
 
+unsigned rd_vk_messages(const rd_vk* vk)
+{
+    (void)vk;
+    return 0;
+}
+
 const char* rd_vk_device_name(const rd_vk* vk)
 {
     (void)vk;

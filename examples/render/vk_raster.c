@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#define COLORS_MAX    6u
+#define COLORS_MAX    7u
 #define CONSTANTS_MAX 8u
 
 /* >>targets */
@@ -14,6 +14,7 @@ static const VkFormat formats[RD_VK_TARGET_COUNT] = {
     [RD_VK_RT3] = VK_FORMAT_B10G11R11_UFLOAT_PACK32,
     [RD_VK_RT4] = VK_FORMAT_R8G8B8A8_UNORM,
     [RD_VK_KINDS] = VK_FORMAT_R8_UINT,
+    [RD_VK_NORMALS] = VK_FORMAT_R16G16B16A16_SFLOAT,
     [RD_VK_LIT] = VK_FORMAT_R32G32B32A32_SFLOAT,
     [RD_VK_DEPTH] = VK_FORMAT_D32_SFLOAT,
 };
@@ -47,7 +48,7 @@ static uint32_t colors_of(rd_vk_pass pass, rd_vk_target* out)
 {
     uint32_t n = 0;
     if (pass == RD_VK_PASS_GBUFFER) {
-        for (int i = RD_VK_RT0; i <= RD_VK_KINDS; ++i) {
+        for (int i = RD_VK_RT0; i <= RD_VK_NORMALS; ++i) {
             out[n++] = (rd_vk_target)i;
         }
     } else if (pass == RD_VK_PASS_LIT) {
@@ -87,6 +88,12 @@ static VkSubpassDependency dependency(uint32_t from, uint32_t to)
     return s;
 }
 
+void rd_vk_pass_order(VkSubpassDependency dependencies[2])
+{
+    dependencies[0] = dependency(VK_SUBPASS_EXTERNAL, 0);
+    dependencies[1] = dependency(0, VK_SUBPASS_EXTERNAL);
+}
+
 static VkResult make_pass(rd_vk_raster* r, rd_vk_device* d, rd_vk_pass pass)
 {
     const VkImageLayout depth_layout = pass == RD_VK_PASS_LIT
@@ -117,8 +124,7 @@ static VkResult make_pass(rd_vk_raster* r, rd_vk_device* d, rd_vk_pass pass)
     }
     attachments[count] =
         attachment(formats[RD_VK_DEPTH], pass == RD_VK_PASS_DEPTH, depth_layout);
-    dependencies[0] = dependency(VK_SUBPASS_EXTERNAL, 0);
-    dependencies[1] = dependency(0, VK_SUBPASS_EXTERNAL);
+    rd_vk_pass_order(dependencies);
     return vkCreateRenderPass(d->device, &info, NULL, &r->passes[pass]);
 }
 
@@ -241,6 +247,7 @@ static VkResult make_pipeline(const rd_vk_raster* r, rd_vk_device* d,
         .scissorCount = 1};
     const VkPipelineRasterizationStateCreateInfo raster = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
+        .depthClampEnable = desc->clamps_depth,
         .cullMode = VK_CULL_MODE_NONE,
         .frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE,
         .lineWidth = 1.0f};

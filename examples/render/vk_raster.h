@@ -10,7 +10,8 @@ typedef enum rd_vk_target {
     RD_VK_RT2,
     RD_VK_RT3,
     RD_VK_RT4,
-    RD_VK_KINDS, /* rd_pixel_kind */
+    RD_VK_KINDS,   /* rd_pixel_kind */
+    RD_VK_NORMALS, /* of triangles, for shadows */
     RD_VK_LIT,   /* luminance times exposure, coverage */
     RD_VK_DEPTH, /* reverse */
     RD_VK_TARGET_COUNT
@@ -39,6 +40,8 @@ void rd_vk_raster_free(rd_vk_raster* r, rd_vk_device* d);
 /* Recording. Images are in the layouts of attachments at begin and at end. */
 void rd_vk_pass_begin(const rd_vk_raster* r, rd_vk_device* d, rd_vk_pass pass);
 void rd_vk_pass_end(rd_vk_device* d);
+/* What orders a pass with all else: passes are compatible where this is the same too. */
+void rd_vk_pass_order(VkSubpassDependency dependencies[2]);
 
 /* >>pipelines */
 
@@ -57,7 +60,7 @@ typedef struct rd_vk_pipeline_desc {
     rd_vk_code vertex, fragment; /* no fragment code: depth alone */
     rd_vk_pass pass;
     VkCompareOp compare;
-    bool writes_depth;
+    bool writes_depth, clamps_depth;
     rd_vk_blend blend;
     const uint32_t* constants; /* for the fragment shader, from constant_id 0 on */
     uint32_t constant_count;

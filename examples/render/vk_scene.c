@@ -95,6 +95,27 @@ static bool upload_meshes(rd_vk_scene* s, rd_vk_device* d)
     return ok;
 }
 
+static hdrp_v4 ball_of(const rd_mesh* m)
+{
+    hdrp_v3 low = hdrp_v3_splat(HDRP_FLT_MAX), high = hdrp_v3_splat(-HDRP_FLT_MAX), center;
+    for (uint32_t i = 0; i < m->vertex_count; ++i) {
+        hdrp_v3 p = m->positions[i];
+        low = hdrp_v3_make(hdrp_min(low.x, p.x), hdrp_min(low.y, p.y), hdrp_min(low.z, p.z));
+        high = hdrp_v3_make(hdrp_max(high.x, p.x), hdrp_max(high.y, p.y), hdrp_max(high.z, p.z));
+    }
+    center = hdrp_v3_scale(hdrp_v3_add(low, high), 0.5f);
+    return hdrp_v4_from_v3(center, hdrp_v3_length(hdrp_v3_sub(high, center)));
+}
+
+static bool make_balls(rd_vk_scene* s, rd_vk_device* d)
+{
+    s->balls = (hdrp_v4*)malloc(((size_t)s->scene->mesh_count + 1) * sizeof *s->balls);
+    for (int i = 0; s->balls && i < s->scene->mesh_count; ++i) {
+        s->balls[i] = ball_of(&s->scene->meshes[i]);
+    }
+    return s->balls || rd_fail(d->report, "--backend vulkan", "out of memory");
+}
+
 /* >>materials */
 
 static hdrp_v4 size_of(const rd_scene* scene, int texture)
@@ -342,7 +363,7 @@ bool rd_vk_scene_make(rd_vk_scene* s, rd_vk_device* d, const rd_scene* scene)
 {
     memset(s, 0, sizeof *s);
     s->scene = scene;
-    return upload_meshes(s, d) && upload_materials(s, d) && upload_textures(s, d) &&
+    return upload_meshes(s, d) && make_balls(s, d) && upload_materials(s, d) && upload_textures(s, d) &&
            make_samplers(s, d) && make_layout(s, d) && make_sets(s, d);
 }
 
@@ -363,6 +384,7 @@ void rd_vk_scene_free(rd_vk_scene* s, rd_vk_device* d)
     hdrp_gpu_vk_buffer_destroy(&d->gpu, &s->vertices);
     hdrp_gpu_vk_buffer_destroy(&d->gpu, &s->indices);
     free(s->textures);
+    free(s->balls);
     free(s->material_sets);
     memset(s, 0, sizeof *s);
 }

@@ -32,6 +32,7 @@ typedef struct rd_vk_scene {
     VkDescriptorSetLayout material_layout;
     VkDescriptorPool pool;
     VkDescriptorSet* material_sets;
+    hdrp_v4* balls; /* around each mesh */
 } rd_vk_scene;
 
 bool rd_vk_scene_make(rd_vk_scene* s, rd_vk_device* d, const rd_scene* scene);

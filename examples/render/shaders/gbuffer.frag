@@ -12,7 +12,8 @@ layout(location = 1) out vec4 rt1;
 layout(location = 2) out vec4 rt2;
 layout(location = 3) out vec3 rt3;
 layout(location = 4) out vec4 rt4;
-layout(location = 5) out uint kind; // RD_PIXEL_..., light layers above
+layout(location = 5) out uint kind; // RD_PIXEL_...
+layout(location = 6) out vec4 geometric_normal;
 
 #define PIXEL_DEFERRED 1u
 #define PIXEL_FORWARD  2u
@@ -31,6 +32,7 @@ void main()
     e.shadow_masks = vec4(1.0);
     e.targets = HDRP_PACK_GBUFFER_RT4;
     g = hdrp_pack_gbuffer_encode(data, e);
+    geometric_normal = vec4(s.geometric_normal, 0.0);
     kind = deferred ? PIXEL_DEFERRED : PIXEL_FORWARD;
     rt0 = deferred ? g.rt0 : vec4(0.0);
     rt1 = deferred ? g.rt1 : hdrp_pack_normal_buffer_encode(data.normal, data.perceptual_roughness);

@@ -58,6 +58,7 @@ layout(std430, set = 0, binding = 5) readonly buffer Order { uint order[]; }; //
 layout(push_constant) uniform Draw {
     uint mesh;
     uint ordered; // 1: triangles are those of the order
+    uint view;    // of a shadow map
 } draw;
 
 vec2 fetch2(uint first, uint i)

@@ -42,11 +42,9 @@ vec4 combine4(uint first)
            fetch4(first, corner.z) * weight.z;
 }
 
-// Where the ray meets the plane of the triangle; its distance. Moeller and Trumbore 1997.
-float set_patch(uint mesh_index, uint triangle, Ray ray)
+vec3 set_triangle(uint mesh_index, uint triangle)
 {
-    vec3 a, s, p, q;
-    float k;
+    vec3 a;
     mesh = meshes[mesh_index];
     material_index = mesh.more.z;
     for (int i = 0; i < 3; ++i) {
@@ -55,15 +53,20 @@ float set_patch(uint mesh_index, uint triangle, Ray ray)
     a = fetch3(mesh.data.y, corner.x);
     edge1 = fetch3(mesh.data.y, corner.y) - a;
     edge2 = fetch3(mesh.data.y, corner.z) - a;
-    p = cross(ray.direction, edge2);
-    k = dot(edge1, p);
+    weight_dx = weight_dy = vec2(0.0);
+    return a;
+}
+
+// Where the ray meets the plane of the triangle; its distance. Moeller and Trumbore 1997.
+float set_patch(uint mesh_index, uint triangle, Ray ray)
+{
+    vec3 a = set_triangle(mesh_index, triangle);
+    vec3 s = ray.origin - a, p = cross(ray.direction, edge2), q = cross(s, edge1);
+    float k = dot(edge1, p);
     k = k != 0.0 ? 1.0 / k : 0.0;
-    s = ray.origin - a;
-    q = cross(s, edge1);
     weight.y = dot(s, p) * k;
     weight.z = dot(ray.direction, q) * k;
     weight.x = 1.0 - weight.y - weight.z;
-    weight_dx = weight_dy = vec2(0.0);
     return dot(edge2, q) * k;
 }
 

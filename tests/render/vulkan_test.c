@@ -1,0 +1,208 @@
+/* Pictures of --backend vulkan against those of the CPU, of scenes as hdrp_render loads them. Exit
+ * status 77 where there is no device. With a file as the first argument that scene is compared, and
+ * with --features=LIST and others as for hdrp_render; without, the built-in scene. */
+#include "compare.h"
+#include "exposure.h"
+#include "render.h"
+#include "vk_backend.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define SKIPPED 77
+
+/* The errors that are allowed: root of the mean square of relative differences away from edges, and
+ * the share of pixels that differ by more than a tenth. */
+typedef struct limits {
+    double rmse, wrong;
+} limits;
+
+typedef struct studio {
+    rd_options options;
+    rd_report report;
+    rd_stats stats;
+    rd_progress progress;
+    rd_scene scene;
+    rd_trace* trace;
+    rd_environment environment;
+    rd_lighting lighting;
+    rd_camera camera;
+    float ev100;
+    rd_renderer renderer;
+} studio;
+
+static bool load(studio* s)
+{
+    rd_options* o = &s->options;
+    return (o->scene                          ? rd_scene_load_gltf(&s->scene, o->scene, &s->report)
+            : o->builtin == RD_BUILTIN_LIGHTS ? rd_scene_build_lights(&s->scene, &s->report)
+                                              : rd_scene_build_builtin(&s->scene, &s->report)) &&
+           rd_textures_prepare(&s->scene.textures, &s->report) &&
+           (s->trace = rd_trace_build(&s->scene, &s->report)) != NULL;
+}
+
+static bool light(studio* s)
+{
+    const float fov = s->options.fov_deg * (HDRP_PI / 180.0f);
+    const rd_options* o = &s->options;
+    rd_environment_desc d = {NULL,   "sky", HDRP_PI, 0.75f, -0.65f, {0.24f, 0.22f, 0.19f},
+                             o->quality};
+    rd_lighting_desc l = {&s->scene, s->trace, &s->environment, o};
+    if (s->scene.has_sky) {
+        d.lux = 0.0f;
+        d.sun_elevation_rad = s->scene.sun_elevation_rad;
+        d.sun_azimuth_rad = s->scene.sun_azimuth_rad;
+        d.ground_albedo = s->scene.ground_albedo;
+    }
+    s->camera = rd_camera_frame(&s->scene, fov, o->width, o->height);
+    if (o->has_eye) {
+        s->camera = rd_camera_look_at(o->eye, o->target, fov, o->width, o->height);
+    } else if (s->scene.camera_count > 0) {
+        s->camera = rd_camera_from_scene(&s->scene, 0, o->width, o->height);
+    }
+    return (!s->scene.has_sky && s->scene.light_count > 0
+                ? true
+                : rd_environment_make(&s->environment, &d, &s->stats, &s->report)) &&
+           rd_lighting_make(&s->lighting, &l, &s->stats, &s->report) &&
+           rd_exposure_meter(o, &s->lighting, &s->camera, &s->ev100, &s->report);
+}
+
+static float* copy_film(const rd_renderer* r)
+{
+    size_t bytes = (size_t)r->width * (size_t)r->height * 4 * sizeof(float);
+    float* film = (float*)malloc(bytes);
+    if (film) {
+        memcpy(film, r->film, bytes);
+    }
+    return film;
+}
+
+/* >>edges: pixels beside which is another mesh, or a surface that is turned away or farther off */
+
+static bool continues(const rd_renderer* r, size_t a, size_t b)
+{
+    const rd_hit *x = &r->hits[a], *y = &r->hits[b];
+    const hdrp_v3* n = r->gbuffer.geometric_normals;
+    if (x->mesh != y->mesh || x->mesh == RD_NO_HIT) {
+        return x->mesh == y->mesh;
+    }
+    return hdrp_v3_dot(n[a], n[b]) > 0.9f && fabsf(x->t - y->t) < 0.05f * x->t;
+}
+
+static bool is_inside(const rd_renderer* r, int x, int y)
+{
+    size_t w = (size_t)r->width, at = (size_t)y * w + (size_t)x;
+    if (x < 1 || y < 1 || x + 1 >= r->width || y + 1 >= r->height) {
+        return false;
+    }
+    for (int k = 0; k < 9; ++k) {
+        if (!continues(r, at, at + (size_t)(k / 3) * w + (size_t)(k % 3) - w - 1)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* >>comparison */
+
+static double luminance(const float* p)
+{
+    return 0.2126 * (double)p[0] + 0.7152 * (double)p[1] + 0.0722 * (double)p[2];
+}
+
+/* Relative to what is there, or a thousandth of what the picture shows as white. */
+static bool compare(const studio* s, const float* cpu, const float* gpu, limits most)
+{
+    const rd_renderer* r = &s->renderer;
+    float exposure = hdrp_light_exposure_saturation(s->ev100);
+    double square = 0, cpu_sum = 0, gpu_sum = 0;
+    size_t n = 0, wrong = 0, edges = 0;
+    rd_difference d;
+    for (int y = 0; y < r->height; ++y) {
+        for (int x = 0; x < r->width; ++x) {
+            size_t at = ((size_t)y * (size_t)r->width + (size_t)x) * 4;
+            double a = luminance(cpu + at), b = luminance(gpu + at);
+            double e = fabs(a - b) / fmax(a, 1e-2 / (double)exposure);
+            if (!(cpu[at + 3] > 0.0f)) {
+                continue;
+            }
+            if (!is_inside(r, x, y)) {
+                ++edges;
+                continue;
+            }
+            square += e * e;
+            wrong += e > 0.1;
+            cpu_sum += a;
+            gpu_sum += b;
+            ++n;
+        }
+    }
+    rd_compare(gpu, cpu, r->width, r->height, exposure, &d);
+    printf("%zu pixels, %zu more at edges: relative RMSE %.4f %%, over a tenth %.4f %%, mean %.5f, "
+           "PSNR of all %.2f dB\n",
+           n, edges, 100.0 * sqrt(square / (double)n), 100.0 * (double)wrong / (double)n,
+           gpu_sum / cpu_sum, d.psnr_db);
+    return n > 0 && sqrt(square / (double)n) <= most.rmse &&
+           (double)wrong / (double)n <= most.wrong;
+}
+
+/* 0, 1 or SKIPPED. */
+static int run(studio* s, limits most)
+{
+    rd_renderer_desc d = {&s->options, &s->lighting, 0.0f, &s->stats, &s->progress};
+    float *cpu, *gpu = NULL;
+    rd_vk* vk;
+    bool ok;
+    if (!load(s) || !light(s)) {
+        return 1;
+    }
+    d.exposure = hdrp_light_exposure_saturation(s->ev100);
+    if (!rd_renderer_begin(&s->renderer, &d, &s->report)) {
+        return 1;
+    }
+    rd_render(&s->renderer, &s->camera);
+    cpu = copy_film(&s->renderer);
+    vk = rd_vk_open(&s->renderer, &s->report);
+    if (!vk) {
+        printf("skipped: %s\n", s->report.error);
+        free(cpu);
+        return SKIPPED;
+    }
+    printf("%s: ", rd_vk_device_name(vk));
+    ok = rd_vk_render(vk, &s->renderer, &s->camera);
+    gpu = copy_film(&s->renderer);
+    ok = ok && cpu && gpu && compare(s, cpu, gpu, most) && rd_vk_messages(vk) == 0;
+    rd_vk_close(vk);
+    free(cpu);
+    free(gpu);
+    return !ok;
+}
+
+int main(int argc, char** argv)
+{
+    static studio s; /* zeroed, and large for a stack */
+    limits most = {0.01, 0.002};
+    int status;
+    char default_features[] = "--features=-shadows,-glass_rays,-ao";
+    char* defaults[] = {argv[0], "--size=320x180", "--quality=fast", default_features};
+    bool given = argc > 1;
+    if (!rd_options_parse(&s.options, given ? argc : 4, given ? argv : defaults, &s.report)) {
+        fprintf(stderr, "%s\n", s.report.error);
+        return 1;
+    }
+    if (s.options.features & RD_FEATURE_SHADOWS) { /* maps against rays: only measured */
+        most.rmse = most.wrong = INFINITY;
+    }
+    status = run(&s, most);
+    if (status == 1 && s.report.failed) {
+        fprintf(stderr, "%s\n", s.report.error);
+    }
+    rd_renderer_end(&s.renderer);
+    rd_lighting_free(&s.lighting);
+    rd_environment_free(&s.environment);
+    rd_trace_free(s.trace);
+    rd_scene_free(&s.scene);
+    return status;
+}
