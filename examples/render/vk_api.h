@@ -34,6 +34,7 @@
     X(CmdBeginRenderPass)                                                                          \
     X(CmdBindDescriptorSets)                                                                       \
     X(CmdBindPipeline)                                                                             \
+    X(CmdBlitImage)                                                                                \
     X(CmdClearAttachments)                                                                         \
     X(CmdClearColorImage)                                                                          \
     X(CmdCopyBuffer)                                                                               \

@@ -6,9 +6,10 @@
 
 #include <string.h>
 
-static VkPipeline pipeline_of(rd_vk* vk, bool masked)
+/* Casters in front of the nearest depth count for directional lights alone. */
+static VkPipeline pipeline_of(rd_vk* vk, bool masked, bool clamped)
 {
-    VkPipeline* p = &vk->casters[masked];
+    VkPipeline* p = &vk->casters[masked][clamped];
     rd_vk_pipeline_desc desc;
     if (*p || vk->device.report->failed) {
         return *p;
@@ -23,7 +24,7 @@ static VkPipeline pipeline_of(rd_vk* vk, bool masked)
     desc.pass = RD_VK_PASS_DEPTH; /* compatible with that of the atlas */
     desc.compare = VK_COMPARE_OP_GREATER;
     desc.writes_depth = true;
-    desc.clamps_depth = vk->device.features.depthClamp;
+    desc.clamps_depth = clamped && vk->device.features.depthClamp;
     rd_vk_pipeline_make(&vk->raster, &vk->device, &desc, p);
     return *p;
 }
@@ -48,11 +49,16 @@ static bool is_outside(const hdrp_shadow_view* v, hdrp_v4 ball)
            is_behind(plus(v->clip_w, v->clip_y, -1.0f), ball);
 }
 
+static bool is_cascade(const rd_vk_shadow* s, uint32_t view)
+{
+    return s->views[view].ball.w > 0.0f;
+}
+
 static void draw_mesh(rd_vk* vk, uint32_t view, uint32_t mesh)
 {
     const rd_mesh* m = &vk->scene.scene->meshes[mesh];
     bool masked = vk->scene.scene->materials[m->material].alpha_mode == RD_ALPHA_MASK;
-    VkPipeline p = pipeline_of(vk, masked);
+    VkPipeline p = pipeline_of(vk, masked, is_cascade(&vk->light.shadow, view));
     const uint32_t push[4] = {mesh, 0, view, 0};
     VkCommandBuffer commands = vk->device.commands;
     if (!p) {
@@ -91,11 +97,6 @@ static void draw_view(rd_vk* vk, uint32_t view)
     }
 }
 
-static bool is_cascade(const rd_vk_shadow* s, uint32_t view)
-{
-    return s->views[view].ball.w > 0.0f;
-}
-
 void rd_vk_draw_shadows(rd_vk* vk)
 {
     rd_vk_shadow* s = &vk->light.shadow;
@@ -123,6 +124,7 @@ void rd_vk_draw_shadows(rd_vk* vk)
 
 void rd_vk_casters_free(rd_vk* vk)
 {
-    vkDestroyPipeline(vk->device.device, vk->casters[0], NULL);
-    vkDestroyPipeline(vk->device.device, vk->casters[1], NULL);
+    for (int i = 0; i < 4; ++i) {
+        vkDestroyPipeline(vk->device.device, vk->casters[i / 2][i % 2], NULL);
+    }
 }

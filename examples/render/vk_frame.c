@@ -324,28 +324,9 @@ static void forward(rd_vk* vk)
     rd_vk_mark(&vk->device, "forward opaque and sky");
 }
 
-/* For glass, which looks the opaque picture up. */
-static void keep_opaque(rd_vk* vk)
-{
-    rd_vk_device* d = &vk->device;
-    const rd_vk_image *lit = &vk->raster.targets[RD_VK_LIT], *behind = &vk->light.behind;
-    const VkImageCopy whole = {.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-                               .dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-                               .extent = {vk->raster.width, vk->raster.height, 1}};
-    rd_vk_layout(d, lit, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                 VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
-    rd_vk_layout(d, behind, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-    vkCmdCopyImage(d->commands, lit->base.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                   behind->base.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &whole);
-    rd_vk_layout(d, lit, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                 VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-    rd_vk_layout(d, behind, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                 VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-}
-
 static void transparent(rd_vk* vk)
 {
-    keep_opaque(vk);
+    rd_vk_keep_opaque(vk);
     rd_vk_pass_begin(&vk->raster, &vk->device, RD_VK_PASS_LIT);
     rd_vk_draw_layers(vk, RD_VK_PROGRAM_LAYER);
     rd_vk_pass_end(&vk->device);

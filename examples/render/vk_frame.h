@@ -53,7 +53,7 @@ struct rd_vk {
     VkDescriptorSetLayout frame_layout;
     VkDescriptorPool pool;
     VkDescriptorSet frame_set;
-    VkPipeline programs[RD_VK_PROGRAM_COUNT], casters[2], bound;
+    VkPipeline programs[RD_VK_PROGRAM_COUNT], casters[2][2], bound;
     rd_vk_frame values;
 };
 
@@ -81,6 +81,9 @@ void rd_vk_draw_meshes(rd_vk* vk, rd_vk_program program, rd_vk_choice choice);
 /* The sorted triangles. */
 void rd_vk_draw_layers(rd_vk* vk, rd_vk_program program);
 void rd_vk_draw_sky(rd_vk* vk);
+
+/* vk_pyramid.c */
+void rd_vk_keep_opaque(rd_vk* vk);
 
 /* vk_casters.c */
 void rd_vk_draw_shadows(rd_vk* vk);

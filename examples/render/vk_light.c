@@ -214,7 +214,7 @@ static VkDescriptorImageInfo image_info(const rd_vk_light* l, const rd_vk_raster
             : binding == RD_VK_BIND_BEHIND     ? &l->behind
             : binding == RD_VK_BIND_ATLAS      ? &l->shadow.atlas
             : binding == RD_VK_BIND_KINDS      ? &raster->targets[RD_VK_KINDS]
-            : binding == RD_VK_BIND_DEPTH      ? &raster->targets[RD_VK_DEPTH]
+            : binding == RD_VK_BIND_DEPTH      ? &l->behind_depth
                                                : NULL;
     if (is_cube) {
         info.imageView = l->black_cube.base.view;
@@ -225,9 +225,6 @@ static VkDescriptorImageInfo image_info(const rd_vk_light* l, const rd_vk_raster
         info.imageView = l->shadow.visibility.view;
     } else if (image && image->base.view) {
         info.imageView = image->base.view;
-    }
-    if (binding == RD_VK_BIND_DEPTH) {
-        info.imageLayout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
     }
     return info;
 }
@@ -268,16 +265,34 @@ static void write_set(const rd_vk_light* l, rd_vk_device* d, const rd_vk_raster*
 
 /* >>making */
 
+/* As those of pyramid.c. */
+static uint32_t levels_of(const rd_vk_raster* raster)
+{
+    uint32_t n = 1;
+    while (raster->width >> n > 0u || raster->height >> n > 0u) {
+        ++n;
+    }
+    return n;
+}
+
 static bool make_behind(rd_vk_light* l, rd_vk_device* d, const rd_vk_raster* raster)
 {
     const rd_vk_image_desc desc = {VK_FORMAT_R32G32B32A32_SFLOAT,
                                    raster->width,
                                    raster->height,
+                                   levels_of(raster),
                                    1,
-                                   1,
-                                   VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+                                   VK_IMAGE_USAGE_TRANSFER_DST_BIT |
+                                       VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
                                    0};
-    return rd_vk_image_make(d, &desc, &l->behind);
+    const rd_vk_image_desc depth = {VK_FORMAT_D32_SFLOAT,
+                                    raster->width,
+                                    raster->height,
+                                    1,
+                                    1,
+                                    VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+                                    VK_IMAGE_ASPECT_DEPTH_BIT};
+    return rd_vk_image_make(d, &desc, &l->behind) && rd_vk_image_make(d, &depth, &l->behind_depth);
 }
 
 /* No lists: all lights count as those that reach everything. */
@@ -378,8 +393,8 @@ bool rd_vk_light_make(rd_vk_light* l, rd_vk_device* d, const rd_renderer* r,
 
 void rd_vk_light_free(rd_vk_light* l, rd_vk_device* d)
 {
-    rd_vk_image* images[] = {&l->specular, &l->irradiance, &l->sky,       &l->sky_cube,
-                             &l->behind,   &l->black,      &l->black_cube};
+    rd_vk_image* images[] = {&l->specular, &l->irradiance,   &l->sky,   &l->sky_cube,
+                             &l->behind,   &l->behind_depth, &l->black, &l->black_cube};
     hdrp_gpu_vk_tiles_destroy(&d->gpu, &l->tiles);
     hdrp_gpu_vk_variants_destroy(&d->gpu, &l->variants);
     hdrp_gpu_vk_image_destroy(&d->gpu, &l->fgd);

@@ -40,7 +40,7 @@ typedef struct rd_vk_light {
     rd_vk_mapped params[2];              /* of opaque surfaces, of layers */
     hdrp_gpu_vk_image fgd;
     rd_vk_image specular, irradiance, sky, sky_cube;
-    rd_vk_image behind; /* the opaque picture */
+    rd_vk_image behind, behind_depth; /* the opaque picture */
     rd_vk_image black, black_cube;
     VkSampler clamped, around;
     hdrp_gpu_vk_variants variants;

@@ -33,7 +33,8 @@ static bool make_targets(rd_vk_raster* r, rd_vk_device* d)
         }
         if (i == RD_VK_DEPTH) {
             desc.usage =
-                VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+                VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+                VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
             desc.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
         }
         ok = rd_vk_image_make(d, &desc, &r->targets[i]);

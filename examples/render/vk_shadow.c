@@ -91,8 +91,10 @@ static void assign(rd_vk_shadow* s, hdrp_light* records, const hdrp_shadow_reque
         uint32_t view = r->first + k;
         s->light_of_view[view] = light;
         if (!is_directional) {
-            s->views[view] = hdrp_shadow_view_light(*l, k, NEAREST * l->position_range.w,
-                                                    s->maps[view], settings());
+            /* What is inside of a lamp does not keep its light in. */
+            float nearest_m = hdrp_max(NEAREST * l->position_range.w, l->forward_radius.w);
+            s->views[view] =
+                hdrp_shadow_view_light(*l, k, nearest_m, s->maps[view], settings());
         }
     }
 }

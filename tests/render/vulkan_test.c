@@ -1,6 +1,7 @@
 /* Pictures of --backend vulkan against those of the CPU, of scenes as hdrp_render loads them. Exit
  * status 77 where there is no device. With a file as the first argument that scene is compared, and
- * with --features=LIST and others as for hdrp_render; without, the built-in scene. */
+ * with --features=LIST and others as for hdrp_render; without, the built-in scene. --progress paints
+ * the differences into --out. */
 #include "compare.h"
 #include "exposure.h"
 #include "render.h"
@@ -79,26 +80,70 @@ static float* copy_film(const rd_renderer* r)
     return film;
 }
 
+/* >>layers: the nearest transparent surface of each pixel, and how many there are */
+
+typedef struct layer {
+    uint32_t mesh, count;
+    float t;
+    hdrp_v3 normal;
+} layer;
+
+static hdrp_v3 normal_of(const rd_scene* scene, const rd_hit* hit)
+{
+    const rd_mesh* m = &scene->meshes[hit->mesh];
+    const uint32_t* i = m->indices + (size_t)hit->triangle * 3;
+    hdrp_v3 a = m->positions[i[0]];
+    return hdrp_normalize_or(hdrp_v3_cross(hdrp_v3_sub(m->positions[i[1]], a),
+                                           hdrp_v3_sub(m->positions[i[2]], a)),
+                             hdrp_v3_splat(0.0f));
+}
+
+static layer* find_layers(const studio* s)
+{
+    const rd_renderer* r = &s->renderer;
+    size_t pixels = (size_t)r->width * (size_t)r->height;
+    layer* out = (layer*)calloc(pixels, sizeof *out);
+    rd_layers l = {NULL, 0, 0, 0};
+    for (size_t i = 0; out && i < pixels; ++i) {
+        rd_ray ray = rd_camera_ray(&s->camera, (float)(i % (size_t)r->width) + 0.5f,
+                                   (float)(i / (size_t)r->width) + 0.5f);
+        ray.t_max = r->hits[i].t;
+        rd_trace_layers(s->trace, &ray, &l);
+        out[i].count = l.count;
+        out[i].mesh = l.count ? l.hits[0].mesh : RD_NO_HIT;
+        out[i].t = l.count ? l.hits[0].t : 0.0f;
+        out[i].normal = l.count ? normal_of(&s->scene, &l.hits[0]) : hdrp_v3_splat(0.0f);
+    }
+    free(l.hits);
+    return out;
+}
+
 /* >>edges: pixels beside which is another mesh, or a surface that is turned away or farther off */
 
-static bool continues(const rd_renderer* r, size_t a, size_t b)
+static bool continues(const rd_renderer* r, const layer* layers, size_t a, size_t b)
 {
     const rd_hit *x = &r->hits[a], *y = &r->hits[b];
+    const layer *p = &layers[a], *q = &layers[b];
     const hdrp_v3* n = r->gbuffer.geometric_normals;
+    if (p->mesh != q->mesh || p->count != q->count ||
+        (p->count && (hdrp_v3_dot(p->normal, q->normal) < 0.9f ||
+                      fabsf(p->t - q->t) > 0.05f * p->t))) {
+        return false;
+    }
     if (x->mesh != y->mesh || x->mesh == RD_NO_HIT) {
         return x->mesh == y->mesh;
     }
     return hdrp_v3_dot(n[a], n[b]) > 0.9f && fabsf(x->t - y->t) < 0.05f * x->t;
 }
 
-static bool is_inside(const rd_renderer* r, int x, int y)
+static bool is_inside(const rd_renderer* r, const layer* layers, int x, int y)
 {
     size_t w = (size_t)r->width, at = (size_t)y * w + (size_t)x;
     if (x < 1 || y < 1 || x + 1 >= r->width || y + 1 >= r->height) {
         return false;
     }
     for (int k = 0; k < 9; ++k) {
-        if (!continues(r, at, at + (size_t)(k / 3) * w + (size_t)(k % 3) - w - 1)) {
+        if (!continues(r, layers, at, at + (size_t)(k / 3) * w + (size_t)(k % 3) - w - 1)) {
             return false;
         }
     }
@@ -112,8 +157,29 @@ static double luminance(const float* p)
     return 0.2126 * (double)p[0] + 0.7152 * (double)p[1] + 0.0722 * (double)p[2];
 }
 
+/* Grey where pictures are equal, red where the GPU is brighter, blue where it is darker; full where a
+ * tenth is missing. Edges are dimmed. */
+static void paint(const studio* s, const layer* layers, const float* cpu, const float* gpu)
+{
+    const rd_renderer* r = &s->renderer;
+    float floor_nits = 1e-2f / hdrp_light_exposure_saturation(s->ev100);
+    unsigned char* rgb = (unsigned char*)malloc((size_t)r->width * (size_t)r->height * 3);
+    for (int i = 0; rgb && i < r->width * r->height; ++i) {
+        double a = luminance(cpu + 4 * (size_t)i), b = luminance(gpu + 4 * (size_t)i);
+        double e = 10.0 * (b - a) / fmax(a, (double)floor_nits);
+        double k = is_inside(r, layers, i % r->width, i / r->width) ? 127.0 : 40.0;
+        rgb[3 * i] = (unsigned char)(k * (1.0 + fmax(fmin(e, 1.0), -1.0)));
+        rgb[3 * i + 1] = (unsigned char)(k * (1.0 - fmin(fabs(e), 1.0)));
+        rgb[3 * i + 2] = (unsigned char)(k * (1.0 - fmax(fmin(e, 1.0), -1.0)));
+    }
+    if (rgb) {
+        rd_image_write_png(s->options.out, r->width, r->height, rgb, (rd_report*)&s->report);
+    }
+    free(rgb);
+}
+
 /* Relative to what is there, or a thousandth of what the picture shows as white. */
-static bool compare(const studio* s, const float* cpu, const float* gpu, limits most)
+static bool compare(const studio* s, const layer* layers, const float* cpu, const float* gpu, limits most)
 {
     const rd_renderer* r = &s->renderer;
     float exposure = hdrp_light_exposure_saturation(s->ev100);
@@ -128,7 +194,7 @@ static bool compare(const studio* s, const float* cpu, const float* gpu, limits 
             if (!(cpu[at + 3] > 0.0f)) {
                 continue;
             }
-            if (!is_inside(r, x, y)) {
+            if (!is_inside(r, layers, x, y)) {
                 ++edges;
                 continue;
             }
@@ -138,6 +204,9 @@ static bool compare(const studio* s, const float* cpu, const float* gpu, limits 
             gpu_sum += b;
             ++n;
         }
+    }
+    if (s->options.progress) {
+        paint(s, layers, cpu, gpu);
     }
     rd_compare(gpu, cpu, r->width, r->height, exposure, &d);
     printf("%zu pixels, %zu more at edges: relative RMSE %.4f %%, over a tenth %.4f %%, mean %.5f, "
@@ -153,6 +222,7 @@ static int run(studio* s, limits most)
 {
     rd_renderer_desc d = {&s->options, &s->lighting, 0.0f, &s->stats, &s->progress};
     float *cpu, *gpu = NULL;
+    layer* layers;
     rd_vk* vk;
     bool ok;
     if (!load(s) || !light(s)) {
@@ -164,19 +234,22 @@ static int run(studio* s, limits most)
     }
     rd_render(&s->renderer, &s->camera);
     cpu = copy_film(&s->renderer);
+    layers = find_layers(s);
     vk = rd_vk_open(&s->renderer, &s->report);
     if (!vk) {
         printf("skipped: %s\n", s->report.error);
         free(cpu);
+        free(layers);
         return SKIPPED;
     }
     printf("%s: ", rd_vk_device_name(vk));
     ok = rd_vk_render(vk, &s->renderer, &s->camera);
     gpu = copy_film(&s->renderer);
-    ok = ok && cpu && gpu && compare(s, cpu, gpu, most) && rd_vk_messages(vk) == 0;
+    ok = ok && cpu && gpu && layers && compare(s, layers, cpu, gpu, most) && rd_vk_messages(vk) == 0;
     rd_vk_close(vk);
     free(cpu);
     free(gpu);
+    free(layers);
     return !ok;
 }
 
