@@ -10,6 +10,7 @@
 static VkPipeline pipeline_of(rd_vk* vk, bool masked, bool clamped)
 {
     VkPipeline* p = &vk->casters[masked][clamped];
+    const uint32_t constants[3] = {0, 0, rd_vk_filters_coarsely(&vk->device)};
     rd_vk_pipeline_desc desc;
     if (*p || vk->device.report->failed) {
         return *p;
@@ -21,6 +22,8 @@ static VkPipeline pipeline_of(rd_vk* vk, bool masked, bool clamped)
         desc.fragment.words = spirv_shadow_mask_frag;
         desc.fragment.bytes = sizeof spirv_shadow_mask_frag;
     }
+    desc.constants = constants;
+    desc.constant_count = 3;
     desc.pass = RD_VK_PASS_DEPTH; /* compatible with that of the atlas */
     desc.compare = VK_COMPARE_OP_GREATER;
     desc.writes_depth = true;

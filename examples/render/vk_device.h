@@ -39,6 +39,9 @@ void rd_vk_device_close(rd_vk_device* d);
 bool rd_vk_check(rd_vk_device* d, VkResult result, const char* what);
 bool rd_vk_check_hdrp(rd_vk_device* d, hdrp_result result, const char* what);
 
+/* Samplers round what they filter to 8 bits: those of a device that is a CPU. */
+bool rd_vk_filters_coarsely(const rd_vk_device* d);
+
 /* >>commands */
 
 /* Commands are recorded between the two; rd_vk_run returns when all have been executed. */

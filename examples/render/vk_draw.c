@@ -62,8 +62,8 @@ static hdrp_u32 features_of(const rd_vk* vk, rd_vk_program program)
 static VkPipeline pipeline_of(rd_vk* vk, rd_vk_program program)
 {
     VkPipeline* p = &vk->programs[program];
-    bool lit = program == RD_VK_PROGRAM_FORWARD || program == RD_VK_PROGRAM_LAYER;
-    const uint32_t constants[2] = {features_of(vk, program), RD_VK_FORWARD_WORD};
+    const uint32_t constants[3] = {features_of(vk, program), RD_VK_FORWARD_WORD,
+                                   rd_vk_filters_coarsely(&vk->device)};
     rd_vk_pipeline_desc desc;
     if (*p || vk->device.report->failed) {
         return *p;
@@ -73,7 +73,7 @@ static VkPipeline pipeline_of(rd_vk* vk, rd_vk_program program)
     desc.vertex.bytes =
         program == RD_VK_PROGRAM_SKY ? sizeof spirv_screen_vert : sizeof spirv_mesh_vert;
     desc.constants = constants;
-    desc.constant_count = lit ? 2u : 0u;
+    desc.constant_count = 3;
     desc.fragment = programs[program].fragment;
     desc.pass = programs[program].pass;
     desc.compare = programs[program].compare;

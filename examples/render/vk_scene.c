@@ -126,7 +126,7 @@ static hdrp_v4 size_of(const rd_scene* scene, int texture)
     }
     t = &scene->textures.items[texture];
     return hdrp_v4_make((float)t->width, (float)t->height, (float)t->level_count,
-                        t->is_nearest ? 1.0f : 0.0f);
+                        (float)((int)t->is_nearest | (int)t->wrap_u << 1 | (int)t->wrap_v << 3));
 }
 
 static rd_vk_slot slot_record(const rd_scene* scene, const rd_texture_slot* t)

@@ -28,7 +28,7 @@ struct Mesh {
 struct Slot {
     vec4 u_row; // w: uv set
     vec4 v_row; // w: 1 where there is a texture
-    vec4 size;  // in texels, levels, 1: nearest
+    vec4 size;  // in texels, levels, how it is sampled
 };
 
 struct Material {
