@@ -10,7 +10,7 @@
 static VkPipeline pipeline_of(rd_vk* vk, bool masked, bool clamped)
 {
     VkPipeline* p = &vk->casters[masked][clamped];
-    const uint32_t constants[3] = {0, 0, rd_vk_filters_coarsely(&vk->device)};
+    const uint32_t constants[3] = {0, 0, rd_vk_is_coarse(&vk->device)};
     rd_vk_pipeline_desc desc;
     if (*p || vk->device.report->failed) {
         return *p;

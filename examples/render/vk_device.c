@@ -286,7 +286,7 @@ void rd_vk_device_close(rd_vk_device* d)
     memset(d, 0, sizeof *d);
 }
 
-bool rd_vk_filters_coarsely(const rd_vk_device* d)
+bool rd_vk_is_coarse(const rd_vk_device* d)
 {
     return d->properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
 }

@@ -39,8 +39,8 @@ void rd_vk_device_close(rd_vk_device* d);
 bool rd_vk_check(rd_vk_device* d, VkResult result, const char* what);
 bool rd_vk_check_hdrp(rd_vk_device* d, hdrp_result result, const char* what);
 
-/* Samplers round what they filter to 8 bits: those of a device that is a CPU. */
-bool rd_vk_filters_coarsely(const rd_vk_device* d);
+/* Filters and encodes colours with too few bits: lavapipe, and what else is a CPU. */
+bool rd_vk_is_coarse(const rd_vk_device* d);
 
 /* >>commands */
 
@@ -66,6 +66,7 @@ typedef struct rd_vk_image_desc {
     uint32_t width, height, levels, layers;
     VkImageUsageFlags usage;
     VkImageAspectFlags aspect; /* 0: colour */
+    bool is_mutable;           /* views of other formats will be made */
 } rd_vk_image_desc;
 
 bool rd_vk_image_make(rd_vk_device* d, const rd_vk_image_desc* desc, rd_vk_image* image);

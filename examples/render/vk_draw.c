@@ -63,7 +63,7 @@ static VkPipeline pipeline_of(rd_vk* vk, rd_vk_program program)
 {
     VkPipeline* p = &vk->programs[program];
     const uint32_t constants[3] = {features_of(vk, program), RD_VK_FORWARD_WORD,
-                                   rd_vk_filters_coarsely(&vk->device)};
+                                   rd_vk_is_coarse(&vk->device)};
     rd_vk_pipeline_desc desc;
     if (*p || vk->device.report->failed) {
         return *p;

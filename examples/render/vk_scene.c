@@ -216,7 +216,8 @@ static bool upload_texture(rd_vk_device* d, const rd_texture* t, rd_vk_image* im
         (uint32_t)t->level_count,
         1,
         VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
-        0};
+        0,
+        false};
     size_t offsets[RD_TEXTURE_MAX_LEVELS], bytes = 0;
     for (int i = 0; i < t->level_count; ++i) {
         size_t w = (size_t)(t->width >> i ? t->width >> i : 1);

@@ -84,6 +84,7 @@ static float* copy_film(const rd_renderer* r)
 
 typedef struct layer {
     uint32_t mesh, count;
+    bool grazed; /* an edge of a triangle is so near that a rasteriser may take the other one */
     float t;
     hdrp_v3 normal;
 } layer;
@@ -98,6 +99,32 @@ static hdrp_v3 normal_of(const rd_scene* scene, const rd_hit* hit)
                              hdrp_v3_splat(0.0f));
 }
 
+/* Rasterisers place corners on a grid of 1/256 of a pixel. */
+#define GRAZED_PX (1.0f / 64.0f)
+
+static float distance_px(hdrp_v2 a, hdrp_v2 b, float x, float y)
+{
+    hdrp_v2 d = hdrp_v2_sub(b, a);
+    return fabsf(d.x * (y - a.y) - d.y * (x - a.x)) / fmaxf(hypotf(d.x, d.y), 1e-9f);
+}
+
+static bool is_grazed(const studio* s, const rd_hit* hit, size_t pixel)
+{
+    const rd_mesh* m = &s->scene.meshes[hit->mesh];
+    float x = (float)(pixel % (size_t)s->renderer.width) + 0.5f;
+    float y = (float)(pixel / (size_t)s->renderer.width) + 0.5f;
+    hdrp_v2 corner[3];
+    bool grazed = false;
+    for (int i = 0; i < 3; ++i) {
+        corner[i] = rd_camera_project(
+            &s->camera, m->positions[m->indices[(size_t)hit->triangle * 3 + (size_t)i]]);
+    }
+    for (int i = 0; i < 3; ++i) {
+        grazed = grazed || distance_px(corner[i], corner[(i + 1) % 3], x, y) < GRAZED_PX;
+    }
+    return grazed;
+}
+
 static layer* find_layers(const studio* s)
 {
     const rd_renderer* r = &s->renderer;
@@ -109,6 +136,10 @@ static layer* find_layers(const studio* s)
                                    (float)(i / (size_t)r->width) + 0.5f);
         ray.t_max = r->hits[i].t;
         rd_trace_layers(s->trace, &ray, &l);
+        out[i].grazed = r->hits[i].mesh != RD_NO_HIT && is_grazed(s, &r->hits[i], i);
+        for (uint32_t k = 0; k < l.count; ++k) {
+            out[i].grazed = out[i].grazed || is_grazed(s, &l.hits[k], i);
+        }
         out[i].count = l.count;
         out[i].mesh = l.count ? l.hits[0].mesh : RD_NO_HIT;
         out[i].t = l.count ? l.hits[0].t : 0.0f;
@@ -118,7 +149,8 @@ static layer* find_layers(const studio* s)
     return out;
 }
 
-/* >>edges: pixels beside which is another mesh, or a surface that is turned away or farther off */
+/* >>edges: pixels beside which is another mesh, or a surface that is turned away or farther off, and
+ * those that the edge of a triangle grazes */
 
 static bool continues(const rd_renderer* r, const layer* layers, size_t a, size_t b)
 {
@@ -139,7 +171,7 @@ static bool continues(const rd_renderer* r, const layer* layers, size_t a, size_
 static bool is_inside(const rd_renderer* r, const layer* layers, int x, int y)
 {
     size_t w = (size_t)r->width, at = (size_t)y * w + (size_t)x;
-    if (x < 1 || y < 1 || x + 1 >= r->width || y + 1 >= r->height) {
+    if (layers[at].grazed || x < 1 || y < 1 || x + 1 >= r->width || y + 1 >= r->height) {
         return false;
     }
     for (int k = 0; k < 9; ++k) {

@@ -35,6 +35,10 @@ void main()
     geometric_normal = vec4(s.geometric_normal, 0.0);
     kind = deferred ? PIXEL_DEFERRED : PIXEL_FORWARD;
     rt0 = deferred ? g.rt0 : vec4(0.0);
+    if (IS_COARSE) { // so is its encoding of sRGB: the attachment holds codes
+        rt0.xyz = vec3(hdrp_srgb_from_linear(rt0.x), hdrp_srgb_from_linear(rt0.y),
+                       hdrp_srgb_from_linear(rt0.z));
+    }
     rt1 = deferred ? g.rt1 : hdrp_pack_normal_buffer_encode(data.normal, data.perceptual_roughness);
     rt2 = deferred ? g.rt2 : vec4(0.0);
     rt3 = deferred ? g.rt3 : vec3(0.0);

@@ -38,9 +38,9 @@ vec4 texel_at(uint which, vec2 uv, float lod)
     }
 }
 
-// Lavapipe filters with eight bits, and rounds what comes out to as many: too coarse for normals. There
-// texels are filtered here.
-layout(constant_id = 2) const bool EXACT_FILTER = false;
+// Lavapipe filters with eight bits, and rounds what comes out to as many: too coarse for normals.
+// There texels are filtered here.
+layout(constant_id = 2) const bool IS_COARSE = false;
 
 vec4 fetch_texel(uint which, ivec2 at, int level)
 {
@@ -124,7 +124,7 @@ vec4 filtered(uint which, vec4 size, vec2 uv, vec2 dx, vec2 dy)
     [[dont_unroll]] for (float i = 0.0; i < probes; i += 1.0) {
         float along = probes > 1.0 ? (i + 0.5) / probes - 0.5 : 0.0;
         vec2 at = uv + axis * along;
-        sum += EXACT_FILTER ? filtered_exactly(which, size, at, lod) : texel_at(which, at, lod);
+        sum += IS_COARSE ? filtered_exactly(which, size, at, lod) : texel_at(which, at, lod);
     }
     return sum / probes;
 }
