@@ -172,8 +172,8 @@ static bool has_format(rd_vk_device* d, VkFormat format, VkFormatFeatureFlags ne
 static bool has_what_is_needed(rd_vk_device* d)
 {
     const char* device = d->properties.deviceName;
-    if (!d->features.dualSrcBlend) {
-        return rd_fail(d->report, device, "lacks the feature dualSrcBlend");
+    if (!d->features.dualSrcBlend || !d->features.independentBlend) {
+        return rd_fail(d->report, device, "lacks the features dualSrcBlend or independentBlend");
     }
     if (!has_format(d, VK_FORMAT_R32G32B32A32_SFLOAT,
                     VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT |

@@ -1,6 +1,8 @@
 /* Pipelines that draw meshes, and their draws. */
 #include "vk_frame.h"
 
+#include "bend_frag.h"
+#include "composite_frag.h"
 #include "forward_frag.h"
 #include "gbuffer_frag.h"
 #include "layer_frag.h"
@@ -42,6 +44,12 @@ static const struct {
                            RD_VK_BLEND_NONE},
     [RD_VK_PROGRAM_LAYER] = {RD_VK_PASS_LIT, CODE(layer_frag), VK_COMPARE_OP_GREATER, false,
                              RD_VK_BLEND_LAYER},
+    [RD_VK_PROGRAM_LAYER_APART] = {RD_VK_PASS_LAYERS, CODE(layer_frag), VK_COMPARE_OP_GREATER,
+                                   false, RD_VK_BLEND_LAYER},
+    [RD_VK_PROGRAM_BEND] = {RD_VK_PASS_BEHIND, CODE(bend_frag), VK_COMPARE_OP_GREATER, false,
+                            RD_VK_BLEND_BEHIND},
+    [RD_VK_PROGRAM_COMPOSITE] = {RD_VK_PASS_LIT, CODE(composite_frag), VK_COMPARE_OP_ALWAYS, false,
+                                 RD_VK_BLEND_NONE},
 };
 
 /* Features of the materials that a program may meet. */
@@ -51,7 +59,7 @@ static hdrp_u32 features_of(const rd_vk* vk, rd_vk_program program)
     hdrp_u32 features = 0u;
     for (int i = 0; i < scene->material_count; ++i) {
         const rd_material* m = &scene->materials[i];
-        if (rd_material_is_layer(m) == (program == RD_VK_PROGRAM_LAYER)) {
+        if (rd_material_is_layer(m) == (program != RD_VK_PROGRAM_FORWARD)) {
             features |= m->features;
         }
     }
@@ -62,16 +70,17 @@ static hdrp_u32 features_of(const rd_vk* vk, rd_vk_program program)
 static VkPipeline pipeline_of(rd_vk* vk, rd_vk_program program)
 {
     VkPipeline* p = &vk->programs[program];
-    const uint32_t constants[3] = {features_of(vk, program), RD_VK_FORWARD_WORD,
+    bool screen = program == RD_VK_PROGRAM_SKY || program == RD_VK_PROGRAM_COMPOSITE;
+    const uint32_t constants[3] = {features_of(vk, program),
+                                   program == RD_VK_PROGRAM_BEND ? 0u : RD_VK_FORWARD_WORD,
                                    rd_vk_is_coarse(&vk->device)};
     rd_vk_pipeline_desc desc;
     if (*p || vk->device.report->failed) {
         return *p;
     }
     memset(&desc, 0, sizeof desc);
-    desc.vertex.words = program == RD_VK_PROGRAM_SKY ? spirv_screen_vert : spirv_mesh_vert;
-    desc.vertex.bytes =
-        program == RD_VK_PROGRAM_SKY ? sizeof spirv_screen_vert : sizeof spirv_mesh_vert;
+    desc.vertex.words = screen ? spirv_screen_vert : spirv_mesh_vert;
+    desc.vertex.bytes = screen ? sizeof spirv_screen_vert : sizeof spirv_mesh_vert;
     desc.constants = constants;
     desc.constant_count = 3;
     desc.fragment = programs[program].fragment;
@@ -168,9 +177,14 @@ void rd_vk_draw_layers(rd_vk* vk, rd_vk_program program)
     }
 }
 
-void rd_vk_draw_sky(rd_vk* vk)
+bool rd_vk_has_glass(const rd_vk* vk)
 {
-    VkPipeline p = pipeline_of(vk, RD_VK_PROGRAM_SKY);
+    return (features_of(vk, RD_VK_PROGRAM_LAYER) & HDRP_BRDF_FEATURE_REFRACTION) != 0u;
+}
+
+void rd_vk_draw_screen(rd_vk* vk, rd_vk_program program)
+{
+    VkPipeline p = pipeline_of(vk, program);
     rd_vk_bind_frame(vk, 0);
     if (p) {
         vkCmdBindPipeline(vk->device.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, p);

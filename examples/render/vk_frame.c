@@ -319,17 +319,41 @@ static void forward(rd_vk* vk)
 {
     rd_vk_pass_begin(&vk->raster, &vk->device, RD_VK_PASS_LIT);
     rd_vk_draw_meshes(vk, RD_VK_PROGRAM_FORWARD, RD_VK_FORWARD);
-    rd_vk_draw_sky(vk);
+    rd_vk_draw_screen(vk, RD_VK_PROGRAM_SKY);
     rd_vk_pass_end(&vk->device);
     rd_vk_mark(&vk->device, "forward opaque and sky");
 }
 
-static void transparent(rd_vk* vk)
+static void draw_layers(rd_vk* vk, rd_vk_pass pass, rd_vk_program program)
+{
+    rd_vk_pass_begin(&vk->raster, &vk->device, pass);
+    rd_vk_draw_layers(vk, program);
+    rd_vk_pass_end(&vk->device);
+}
+
+/* Glass does not see what is straight behind it: its light and what it lets through are kept apart
+ * from the opaque picture. */
+static void glass(rd_vk* vk)
 {
     rd_vk_keep_opaque(vk);
+    draw_layers(vk, RD_VK_PASS_LAYERS, RD_VK_PROGRAM_LAYER_APART);
+    draw_layers(vk, RD_VK_PASS_BEHIND, RD_VK_PROGRAM_BEND);
+    for (int i = RD_VK_LAYER_LIGHT; i <= RD_VK_LAYER_DIRECTION; ++i) {
+        rd_vk_layout(&vk->device, &vk->raster.targets[i], VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                     VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    }
     rd_vk_pass_begin(&vk->raster, &vk->device, RD_VK_PASS_LIT);
-    rd_vk_draw_layers(vk, RD_VK_PROGRAM_LAYER);
+    rd_vk_draw_screen(vk, RD_VK_PROGRAM_COMPOSITE);
     rd_vk_pass_end(&vk->device);
+}
+
+static void transparent(rd_vk* vk)
+{
+    if (rd_vk_has_glass(vk)) {
+        glass(vk);
+    } else {
+        draw_layers(vk, RD_VK_PASS_LIT, RD_VK_PROGRAM_LAYER);
+    }
     rd_vk_mark(&vk->device, "transparent surfaces");
 }
 

@@ -38,7 +38,10 @@ typedef enum rd_vk_program {
     RD_VK_PROGRAM_VIEW_LAYER,
     RD_VK_PROGRAM_FORWARD,
     RD_VK_PROGRAM_SKY,
-    RD_VK_PROGRAM_LAYER,
+    RD_VK_PROGRAM_LAYER,       /* over the opaque picture */
+    RD_VK_PROGRAM_LAYER_APART, /* where some bend or scatter what is behind them */
+    RD_VK_PROGRAM_BEND,
+    RD_VK_PROGRAM_COMPOSITE,
     RD_VK_PROGRAM_COUNT
 } rd_vk_program;
 
@@ -80,7 +83,10 @@ void rd_vk_bind_frame(rd_vk* vk, int light);
 void rd_vk_draw_meshes(rd_vk* vk, rd_vk_program program, rd_vk_choice choice);
 /* The sorted triangles. */
 void rd_vk_draw_layers(rd_vk* vk, rd_vk_program program);
-void rd_vk_draw_sky(rd_vk* vk);
+/* RD_VK_PROGRAM_SKY and _COMPOSITE. */
+void rd_vk_draw_screen(rd_vk* vk, rd_vk_program program);
+/* Materials of layers through which light refracts. */
+bool rd_vk_has_glass(const rd_vk* vk);
 
 /* vk_pyramid.c */
 void rd_vk_keep_opaque(rd_vk* vk);

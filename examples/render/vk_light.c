@@ -158,7 +158,7 @@ static VkDescriptorType type_of(uint32_t binding)
         return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     }
     return binding == RD_VK_BIND_SUN_MASK || binding == RD_VK_BIND_KINDS ||
-                   binding == RD_VK_BIND_DEPTH || binding == RD_VK_BIND_ATLAS
+                   binding == RD_VK_BIND_DEPTH || binding == RD_VK_BIND_ATLAS || binding >= RD_VK_BIND_LAYERS
                ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE
                : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 }
@@ -184,7 +184,7 @@ static bool allocate_sets(rd_vk_light* l, rd_vk_device* d)
 {
     const VkDescriptorPoolSize sizes[4] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2},
                                            {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 12},
-                                           {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 8},
+                                           {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 18},
                                            {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 14}};
     const VkDescriptorPoolCreateInfo pool = {.sType =
                                                  VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
@@ -216,7 +216,9 @@ static VkDescriptorImageInfo image_info(const rd_vk_light* l, const rd_vk_raster
             : binding == RD_VK_BIND_SKY_CUBE   ? &l->sky_cube
             : binding == RD_VK_BIND_BEHIND     ? &l->behind
             : binding == RD_VK_BIND_ATLAS      ? &l->shadow.atlas
-            : binding == RD_VK_BIND_KINDS      ? &raster->targets[RD_VK_KINDS]
+            : binding >= RD_VK_BIND_LAYERS
+                ? &raster->targets[RD_VK_LAYER_LIGHT + binding - RD_VK_BIND_LAYERS]
+            : binding == RD_VK_BIND_KINDS ? &raster->targets[RD_VK_KINDS]
             : binding == RD_VK_BIND_DEPTH      ? &l->behind_depth
                                                : NULL;
     if (is_cube) {

@@ -23,7 +23,8 @@
 #define RD_VK_BIND_BEHIND     14u
 #define RD_VK_BIND_KINDS      15u
 #define RD_VK_BIND_DEPTH      16u
-#define RD_VK_BIND_COUNT      17u
+#define RD_VK_BIND_LAYERS     17u /* from here on RD_VK_LAYER_... */
+#define RD_VK_BIND_COUNT      22u
 
 /* A grid of lists in buffers. */
 typedef struct rd_vk_grid {

@@ -16,6 +16,11 @@ static const VkFormat formats[RD_VK_TARGET_COUNT] = {
     [RD_VK_KINDS] = VK_FORMAT_R8_UINT,
     [RD_VK_NORMALS] = VK_FORMAT_R16G16B16A16_SFLOAT,
     [RD_VK_LIT] = VK_FORMAT_R32G32B32A32_SFLOAT,
+    [RD_VK_LAYER_LIGHT] = VK_FORMAT_R32G32B32A32_SFLOAT,
+    [RD_VK_LAYER_THROUGH] = VK_FORMAT_R32G32B32A32_SFLOAT,
+    [RD_VK_LAYER_MOVED] = VK_FORMAT_R32G32B32A32_SFLOAT,
+    [RD_VK_LAYER_MOST] = VK_FORMAT_R32G32B32A32_SFLOAT,
+    [RD_VK_LAYER_DIRECTION] = VK_FORMAT_R32G32B32A32_SFLOAT,
     [RD_VK_DEPTH] = VK_FORMAT_D32_SFLOAT,
 };
 
@@ -73,6 +78,12 @@ static uint32_t colors_of(rd_vk_pass pass, rd_vk_target* out)
         }
     } else if (pass == RD_VK_PASS_LIT) {
         out[n++] = RD_VK_LIT;
+    } else if (pass == RD_VK_PASS_LAYERS) {
+        out[n++] = RD_VK_LAYER_LIGHT;
+    } else if (pass == RD_VK_PASS_BEHIND) {
+        for (int i = RD_VK_LAYER_THROUGH; i <= RD_VK_LAYER_DIRECTION; ++i) {
+            out[n++] = (rd_vk_target)i;
+        }
     }
     return n;
 }
@@ -116,7 +127,7 @@ void rd_vk_pass_order(VkSubpassDependency dependencies[2])
 
 static VkResult make_pass(rd_vk_raster* r, rd_vk_device* d, rd_vk_pass pass)
 {
-    const VkImageLayout depth_layout = pass == RD_VK_PASS_LIT
+    const VkImageLayout depth_layout = pass >= RD_VK_PASS_LIT
                                            ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL
                                            : VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
     rd_vk_target colors[COLORS_MAX];
@@ -139,7 +150,7 @@ static VkResult make_pass(rd_vk_raster* r, rd_vk_device* d, rd_vk_pass pass)
     for (uint32_t i = 0; i < count; ++i) {
         references[i].attachment = i;
         references[i].layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-        attachments[i] = attachment(drawn_format(r, colors[i]), pass == RD_VK_PASS_GBUFFER,
+        attachments[i] = attachment(drawn_format(r, colors[i]), pass != RD_VK_PASS_LIT,
                                     VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
     }
     attachments[count] =
@@ -221,6 +232,9 @@ void rd_vk_pass_begin(const rd_vk_raster* r, rd_vk_device* d, rd_vk_pass pass)
                                   .clearValueCount = COLORS_MAX + 1,
                                   .pClearValues = clear};
     memset(clear, 0, sizeof clear);
+    for (int i = 0; pass == RD_VK_PASS_BEHIND && i < 4; ++i) {
+        clear[0].color.float32[i] = 1.0f; /* of the product */
+    }
     vkCmdBeginRenderPass(d->commands, &info, VK_SUBPASS_CONTENTS_INLINE);
     vkCmdSetViewport(d->commands, 0, 1, &viewport);
     vkCmdSetScissor(d->commands, 0, 1, &info.renderArea);
@@ -239,6 +253,24 @@ static VkResult make_module(rd_vk_device* d, rd_vk_code code, VkShaderModule* ou
     info.codeSize = code.bytes;
     info.pCode = code.words;
     return vkCreateShaderModule(d->device, &info, NULL, out);
+}
+
+/* Of the four attachments of RD_VK_PASS_BEHIND. */
+static VkPipelineColorBlendAttachmentState blending_behind(uint32_t attachment)
+{
+    static const VkBlendFactor from[4] = {VK_BLEND_FACTOR_ZERO, VK_BLEND_FACTOR_ONE,
+                                          VK_BLEND_FACTOR_ONE, VK_BLEND_FACTOR_ONE};
+    static const VkBlendFactor to[4] = {VK_BLEND_FACTOR_SRC_COLOR, VK_BLEND_FACTOR_ONE,
+                                        VK_BLEND_FACTOR_ONE, VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA};
+    VkPipelineColorBlendAttachmentState s;
+    memset(&s, 0, sizeof s);
+    s.colorWriteMask = 15u;
+    s.blendEnable = VK_TRUE;
+    s.colorBlendOp = s.alphaBlendOp = attachment == 2u ? VK_BLEND_OP_MAX : VK_BLEND_OP_ADD;
+    s.srcColorBlendFactor = s.srcAlphaBlendFactor = from[attachment];
+    s.dstColorBlendFactor = to[attachment];
+    s.dstAlphaBlendFactor = attachment == 0u ? VK_BLEND_FACTOR_SRC_ALPHA : to[attachment];
+    return s;
 }
 
 static VkPipelineColorBlendAttachmentState blending(rd_vk_blend blend)
@@ -307,7 +339,7 @@ static VkResult make_pipeline(const rd_vk_raster* r, rd_vk_device* d,
         .renderPass = r->passes[desc->pass]};
     blend.attachmentCount = colors_of(desc->pass, colors);
     for (uint32_t i = 0; i < blend.attachmentCount; ++i) {
-        blends[i] = blending(desc->blend);
+        blends[i] = desc->blend == RD_VK_BLEND_BEHIND ? blending_behind(i) : blending(desc->blend);
     }
     return vkCreateGraphicsPipelines(d->device, VK_NULL_HANDLE, 1, &info, NULL, out);
 }

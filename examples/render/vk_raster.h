@@ -13,6 +13,11 @@ typedef enum rd_vk_target {
     RD_VK_KINDS,   /* rd_pixel_kind */
     RD_VK_NORMALS, /* of triangles, for shadows */
     RD_VK_LIT,   /* luminance times exposure, coverage */
+    RD_VK_LAYER_LIGHT, /* of layers alone */
+    RD_VK_LAYER_THROUGH,
+    RD_VK_LAYER_MOVED,
+    RD_VK_LAYER_MOST,
+    RD_VK_LAYER_DIRECTION,
     RD_VK_DEPTH, /* reverse */
     RD_VK_TARGET_COUNT
 } rd_vk_target;
@@ -20,7 +25,9 @@ typedef enum rd_vk_target {
 typedef enum rd_vk_pass {
     RD_VK_PASS_DEPTH,   /* cleared */
     RD_VK_PASS_GBUFFER, /* cleared, over the depth */
-    RD_VK_PASS_LIT,     /* loaded, depth is only tested */
+    RD_VK_PASS_LIT,     /* loaded, depth is only tested, as in what follows */
+    RD_VK_PASS_LAYERS,  /* cleared */
+    RD_VK_PASS_BEHIND,  /* cleared */
     RD_VK_PASS_COUNT
 } rd_vk_pass;
 
@@ -54,7 +61,8 @@ typedef struct rd_vk_code {
 typedef enum rd_vk_blend {
     RD_VK_BLEND_NONE,
     RD_VK_BLEND_OVER, /* premultiplied alpha */
-    RD_VK_BLEND_LAYER /* second output: what is let through */
+    RD_VK_BLEND_LAYER, /* second output: what is let through */
+    RD_VK_BLEND_BEHIND /* of bend.frag: product, sum, largest, last */
 } rd_vk_blend;
 
 typedef struct rd_vk_pipeline_desc {
