@@ -8,6 +8,11 @@ static VkOffset3D corner(uint32_t width, uint32_t height, uint32_t level)
     return o;
 }
 
+static int32_t least(int32_t a, int32_t b)
+{
+    return a < b ? a : b;
+}
+
 /* Each level is the mean of four texels of the one before. */
 static void make_levels(rd_vk_device* d, const rd_vk_image* image)
 {
@@ -26,8 +31,11 @@ static void make_levels(rd_vk_device* d, const rd_vk_image* image)
         b.subresourceRange.baseMipLevel = i;
         vkCmdPipelineBarrier(d->commands, VK_PIPELINE_STAGE_TRANSFER_BIT,
                              VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, NULL, 0, NULL, 1, &b);
-        blit.srcOffsets[1] = corner(image->base.width_px, image->base.height_px, i);
+        /* Without the last row and column where there is an odd number, as in pyramid.c. */
         blit.dstOffsets[1] = corner(image->base.width_px, image->base.height_px, i + 1);
+        blit.srcOffsets[1] = corner(image->base.width_px, image->base.height_px, i);
+        blit.srcOffsets[1].x = least(2 * blit.dstOffsets[1].x, blit.srcOffsets[1].x);
+        blit.srcOffsets[1].y = least(2 * blit.dstOffsets[1].y, blit.srcOffsets[1].y);
         if (i + 1 < image->levels) {
             vkCmdBlitImage(d->commands, image->base.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
                            image->base.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &blit,

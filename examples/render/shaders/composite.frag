@@ -23,6 +23,32 @@ layout(location = 0) out vec4 color;
 #define BLUR_TAPS     8u
 #define BLUR_LOD_BIAS 1.5
 
+// Lavapipe takes one level of detail for four pixels: there levels are filtered here.
+layout(constant_id = 2) const bool IS_COARSE = false;
+
+vec3 level_at(vec2 uv, int level)
+{
+    ivec2 n = max(ivec2(frame.jitter_size.zw) >> level, ivec2(1));
+    vec2 at = clamp(uv, 0.0, 1.0) * vec2(n) - 0.5, first = floor(at), t = at - first;
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < 4; ++i) {
+        vec2 w = mix(1.0 - t, t, vec2(i & 1, i >> 1));
+        ivec2 to = clamp(ivec2(first) + ivec2(i & 1, i >> 1), ivec2(0), n - 1);
+        sum += texelFetch(opaque, to, level).xyz * (w.x * w.y);
+    }
+    return sum;
+}
+
+vec3 picture_at(vec2 uv, float lod)
+{
+    float level = clamp(floor(lod), 0.0, float(textureQueryLevels(opaque) - 1));
+    int next = min(int(level) + 1, textureQueryLevels(opaque) - 1);
+    if (!IS_COARSE) {
+        return textureLod(opaque, uv, lod).xyz;
+    }
+    return mix(level_at(uv, int(level)), level_at(uv, next), clamp(lod - level, 0.0, 1.0));
+}
+
 vec3 blurred(vec2 at, float radius)
 {
     uvec2 pixel = uvec2(gl_FragCoord.xy);
@@ -35,7 +61,7 @@ vec3 blurred(vec2 at, float radius)
     for (uint i = 0u; i < taps; ++i) {
         vec2 d = radius < 0.5 ? vec2(0.0) : hdrp_fibonacci_disk(i, BLUR_TAPS) * radius;
         vec2 to = at + vec2(c * d.x - k * d.y, k * d.x + c * d.y);
-        sum += textureLod(opaque, to / frame.jitter_size.zw, taps > 1u ? max(lod, 0.0) : 0.0).xyz;
+        sum += picture_at(to / frame.jitter_size.zw, taps > 1u ? max(lod, 0.0) : 0.0);
     }
     return sum / float(taps);
 }
