@@ -5,8 +5,8 @@
 #include <string.h>
 
 typedef struct key {
-    float depth;
-    uint32_t mesh, triangle;
+    float mesh_depth, depth;
+    uint32_t mesh, is_front, triangle;
 } key;
 
 static bool is_layer(const rd_scene* scene, int mesh)
@@ -40,23 +40,45 @@ void rd_vk_order_free(rd_vk* vk)
     memset(&vk->order, 0, sizeof vk->order);
 }
 
-static float depth_of(const rd_mesh* m, uint32_t triangle, const rd_camera* c)
+static float depth_at(hdrp_v3 p, const rd_camera* c)
 {
-    const uint32_t* i = m->indices + (size_t)triangle * 3;
-    hdrp_v3 sum = hdrp_v3_add(hdrp_v3_add(m->positions[i[0]], m->positions[i[1]]),
-                              m->positions[i[2]]);
-    hdrp_v3 to = hdrp_v3_sub(hdrp_v3_scale(sum, 1.0f / 3.0f), c->eye);
+    hdrp_v3 to = hdrp_v3_sub(p, c->eye);
     return c->orthographic ? hdrp_v3_dot(to, c->forward) : hdrp_v3_dot(to, to);
+}
+
+/* Of a mesh, what is turned away comes first: thin shells are behind their own front, however large
+ * their triangles are. */
+static key key_of(const rd_vk* vk, uint32_t mesh, uint32_t triangle, const rd_camera* c)
+{
+    const rd_mesh* m = &vk->scene.scene->meshes[mesh];
+    const uint32_t* i = m->indices + (size_t)triangle * 3;
+    hdrp_v3 p = m->positions[i[0]], q = m->positions[i[1]], r = m->positions[i[2]];
+    hdrp_v3 n = hdrp_v3_cross(hdrp_v3_sub(q, p), hdrp_v3_sub(r, p));
+    hdrp_v3 to = c->orthographic ? c->forward : hdrp_v3_sub(p, c->eye);
+    key k;
+    k.mesh_depth = depth_at(hdrp_v3_from_v4(vk->scene.balls[mesh]), c);
+    k.depth =
+        depth_at(hdrp_v3_scale(hdrp_v3_add(hdrp_v3_add(p, q), r), 1.0f / 3.0f), c);
+    k.mesh = mesh;
+    k.is_front = hdrp_v3_dot(n, to) < 0.0f;
+    k.triangle = triangle;
+    return k;
 }
 
 static int by_depth(const void* a, const void* b)
 {
     const key *x = (const key*)a, *y = (const key*)b;
-    if (x->depth != y->depth) {
-        return x->depth > y->depth ? -1 : 1;
+    if (x->mesh_depth != y->mesh_depth) {
+        return x->mesh_depth > y->mesh_depth ? -1 : 1;
     }
     if (x->mesh != y->mesh) {
         return x->mesh < y->mesh ? -1 : 1;
+    }
+    if (x->is_front != y->is_front) {
+        return x->is_front ? 1 : -1;
+    }
+    if (x->depth != y->depth) {
+        return x->depth > y->depth ? -1 : 1;
     }
     return x->triangle < y->triangle ? -1 : x->triangle > y->triangle;
 }
@@ -86,9 +108,7 @@ void rd_vk_order_sort(rd_vk* vk, const rd_camera* camera)
     for (int i = 0; i < scene->mesh_count; ++i) {
         const rd_mesh* m = &scene->meshes[i];
         for (uint32_t t = 0; is_layer(scene, i) && t < m->triangle_count; ++t) {
-            keys[o->count].depth = depth_of(m, t, camera);
-            keys[o->count].mesh = (uint32_t)i;
-            keys[o->count++].triangle = t;
+            keys[o->count++] = key_of(vk, (uint32_t)i, t, camera);
         }
     }
     qsort(keys, o->count, sizeof *keys, by_depth);
