@@ -66,7 +66,6 @@ typedef struct rd_vk_image_desc {
     uint32_t width, height, levels, layers;
     VkImageUsageFlags usage;
     VkImageAspectFlags aspect; /* 0: colour */
-    bool is_mutable;           /* views of other formats will be made */
 } rd_vk_image_desc;
 
 bool rd_vk_image_make(rd_vk_device* d, const rd_vk_image_desc* desc, rd_vk_image* image);

@@ -15,8 +15,7 @@ static bool make_cube(rd_vk_device* d, const hdrp_env_cube* cube, rd_vk_image* i
                                    cube->level_count,
                                    6,
                                    VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
-                                   0,
-                                   false};
+                                   0};
     size_t offsets[32], bytes = 0;
     for (uint32_t i = 0; i < cube->level_count; ++i) {
         size_t side = cube->size >> i ? cube->size >> i : 1u;
@@ -39,8 +38,7 @@ static bool make_seen(rd_vk_device* d, const hdrp_env_image* seen, rd_vk_image* 
                                    1,
                                    rows / seen->height,
                                    VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
-                                   0,
-                                   false};
+                                   0};
     float* copy = (float*)malloc(texels * 4 * sizeof *copy);
     bool ok;
     if (!copy) {
@@ -69,8 +67,7 @@ static bool make_black(rd_vk_device* d, uint32_t layers, rd_vk_image* image)
                                    1,
                                    layers,
                                    VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
-                                   0,
-                                   false};
+                                   0};
     return rd_vk_image_make(d, &desc, image) &&
            rd_vk_image_fill(d, image, texels, layers * 4 * sizeof(float), &start);
 }
@@ -289,16 +286,14 @@ static bool make_behind(rd_vk_light* l, rd_vk_device* d, const rd_vk_raster* ras
                                    1,
                                    VK_IMAGE_USAGE_TRANSFER_DST_BIT |
                                        VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
-                                   0,
-                                   false};
+                                   0};
     const rd_vk_image_desc depth = {VK_FORMAT_D32_SFLOAT,
                                     raster->width,
                                     raster->height,
                                     1,
                                     1,
                                     VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
-                                    VK_IMAGE_ASPECT_DEPTH_BIT,
-        false};
+                                    VK_IMAGE_ASPECT_DEPTH_BIT};
     return rd_vk_image_make(d, &desc, &l->behind) && rd_vk_image_make(d, &depth, &l->behind_depth);
 }
 

@@ -119,7 +119,6 @@ bool rd_vk_image_make(rd_vk_device* d, const rd_vk_image_desc* desc, rd_vk_image
     info.extent.depth = 1;
     info.usage = desc->usage;
     info.flags = desc->layers == 6u ? (VkImageCreateFlags)VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT : 0u;
-    info.flags |= desc->is_mutable ? (VkImageCreateFlags)VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT : 0u;
     r = vkCreateImage(d->device, &info, NULL, &image->base.image);
     if (r == VK_SUCCESS) {
         r = place(d, image);

@@ -24,33 +24,23 @@ static const VkFormat formats[RD_VK_TARGET_COUNT] = {
     [RD_VK_DEPTH] = VK_FORMAT_D32_SFLOAT,
 };
 
-/* Lavapipe's sRGB encoding is off by up to a code: there the shader encodes. */
-static VkFormat drawn_format(const rd_vk_raster* r, rd_vk_target target)
+/* Lavapipe's conversions from and to sRGB are off by up to a code: there the shader rounds RT0 to
+ * codes, and the target keeps what they stand for. */
+static VkFormat format_of(const rd_vk_device* d, int target)
 {
-    return target == RD_VK_RT0 && r->rt0_codes ? VK_FORMAT_R8G8B8A8_UNORM : formats[target];
-}
-
-static bool make_codes(rd_vk_raster* r, rd_vk_device* d)
-{
-    VkImageViewCreateInfo view = {.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
-                                  .viewType = VK_IMAGE_VIEW_TYPE_2D,
-                                  .format = VK_FORMAT_R8G8B8A8_UNORM,
-                                  .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
-    view.image = r->targets[RD_VK_RT0].base.image;
-    return !rd_vk_is_coarse(d) ||
-           rd_vk_check(d, vkCreateImageView(d->device, &view, NULL, &r->rt0_codes), "a view");
+    return target == RD_VK_RT0 && rd_vk_is_coarse(d) ? VK_FORMAT_R32G32B32A32_SFLOAT
+                                                     : formats[target];
 }
 
 static bool make_targets(rd_vk_raster* r, rd_vk_device* d)
 {
     bool ok = true;
     for (int i = 0; ok && i < RD_VK_TARGET_COUNT; ++i) {
-        rd_vk_image_desc desc = {formats[i], r->width, r->height, 1, 1,
+        rd_vk_image_desc desc = {format_of(d, i), r->width, r->height, 1, 1,
                                  VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
                                      VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
                                      VK_IMAGE_USAGE_TRANSFER_DST_BIT,
-                                 VK_IMAGE_ASPECT_COLOR_BIT,
-                                 false};
+                                 VK_IMAGE_ASPECT_COLOR_BIT};
         if (i == RD_VK_LIT) {
             desc.usage |= VK_IMAGE_USAGE_STORAGE_BIT;
         }
@@ -60,10 +50,9 @@ static bool make_targets(rd_vk_raster* r, rd_vk_device* d)
                 VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
             desc.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
         }
-        desc.is_mutable = i == RD_VK_RT0 && rd_vk_is_coarse(d);
         ok = rd_vk_image_make(d, &desc, &r->targets[i]);
     }
-    return ok && make_codes(r, d);
+    return ok;
 }
 
 /* >>render passes */
@@ -150,7 +139,7 @@ static VkResult make_pass(rd_vk_raster* r, rd_vk_device* d, rd_vk_pass pass)
     for (uint32_t i = 0; i < count; ++i) {
         references[i].attachment = i;
         references[i].layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-        attachments[i] = attachment(drawn_format(r, colors[i]), pass != RD_VK_PASS_LIT,
+        attachments[i] = attachment(format_of(d, (int)colors[i]), pass != RD_VK_PASS_LIT,
                                     VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
     }
     attachments[count] =
@@ -172,8 +161,7 @@ static VkResult make_framebuffer(rd_vk_raster* r, rd_vk_device* d, rd_vk_pass pa
                                     .height = r->height,
                                     .layers = 1};
     for (uint32_t i = 0; i < count; ++i) {
-        bool codes = colors[i] == RD_VK_RT0 && r->rt0_codes;
-        views[i] = codes ? r->rt0_codes : r->targets[colors[i]].base.view;
+        views[i] = r->targets[colors[i]].base.view;
     }
     views[count] = r->targets[RD_VK_DEPTH].base.view;
     return vkCreateFramebuffer(d->device, &info, NULL, &r->framebuffers[pass]);
@@ -208,9 +196,6 @@ void rd_vk_raster_free(rd_vk_raster* r, rd_vk_device* d)
     for (int i = 0; d->device && i < RD_VK_PASS_COUNT; ++i) {
         vkDestroyFramebuffer(d->device, r->framebuffers[i], NULL);
         vkDestroyRenderPass(d->device, r->passes[i], NULL);
-    }
-    if (d->device) {
-        vkDestroyImageView(d->device, r->rt0_codes, NULL);
     }
     for (int i = 0; i < RD_VK_TARGET_COUNT; ++i) {
         rd_vk_image_free(d, &r->targets[i]);

@@ -34,7 +34,6 @@ typedef enum rd_vk_pass {
 typedef struct rd_vk_raster {
     uint32_t width, height;
     rd_vk_image targets[RD_VK_TARGET_COUNT];
-    VkImageView rt0_codes; /* to write codes where the device encodes sRGB coarsely; else none */
     VkRenderPass passes[RD_VK_PASS_COUNT];
     VkFramebuffer framebuffers[RD_VK_PASS_COUNT];
     VkPipelineLayout layout;

@@ -126,7 +126,8 @@ static hdrp_v4 size_of(const rd_scene* scene, int texture)
     }
     t = &scene->textures.items[texture];
     return hdrp_v4_make((float)t->width, (float)t->height, (float)t->level_count,
-                        (float)((int)t->is_nearest | (int)t->wrap_u << 1 | (int)t->wrap_v << 3));
+                        (float)((int)t->is_nearest | (int)t->wrap_u << 1 | (int)t->wrap_v << 3 |
+                                (int)t->is_srgb << 5));
 }
 
 static rd_vk_slot slot_record(const rd_scene* scene, const rd_texture_slot* t)
@@ -210,14 +211,13 @@ static bool upload_materials(rd_vk_scene* s, rd_vk_device* d)
 static bool upload_texture(rd_vk_device* d, const rd_texture* t, rd_vk_image* image)
 {
     const rd_vk_image_desc desc = {
-        t->is_srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM,
+        t->is_srgb && !rd_vk_is_coarse(d) ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM,
         (uint32_t)t->width,
         (uint32_t)t->height,
         (uint32_t)t->level_count,
         1,
         VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
-        0,
-        false};
+        0};
     size_t offsets[RD_TEXTURE_MAX_LEVELS], bytes = 0;
     for (int i = 0; i < t->level_count; ++i) {
         size_t w = (size_t)(t->width >> i ? t->width >> i : 1);

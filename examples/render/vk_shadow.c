@@ -177,8 +177,7 @@ static bool make_images(rd_vk_shadow* s, rd_vk_device* d, const rd_renderer* r)
         1,
         1,
         VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
-        VK_IMAGE_ASPECT_DEPTH_BIT,
-        false};
+        VK_IMAGE_ASPECT_DEPTH_BIT};
     size_t bytes = (size_t)s->view_count * sizeof *s->views;
     return rd_vk_image_make(d, &desc, &s->atlas) && make_pass(s, d) &&
            rd_vk_check_hdrp(

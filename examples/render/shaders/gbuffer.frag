@@ -35,9 +35,8 @@ void main()
     geometric_normal = vec4(s.geometric_normal, 0.0);
     kind = deferred ? PIXEL_DEFERRED : PIXEL_FORWARD;
     rt0 = deferred ? g.rt0 : vec4(0.0);
-    if (IS_COARSE) { // so is its encoding of sRGB: the attachment holds codes
-        rt0.xyz = vec3(hdrp_srgb_from_linear(rt0.x), hdrp_srgb_from_linear(rt0.y),
-                       hdrp_srgb_from_linear(rt0.z));
+    if (IS_COARSE) { // so are its conversions from and to sRGB: the target keeps what codes stand for
+        rt0 = hdrp_pack_linear_from_srgba8(hdrp_pack_srgba8_from_linear(rt0));
     }
     rt1 = deferred ? g.rt1 : hdrp_pack_normal_buffer_encode(data.normal, data.perceptual_roughness);
     rt2 = deferred ? g.rt2 : vec4(0.0);

@@ -39,7 +39,7 @@ vec4 texel_at(uint which, vec2 uv, float lod)
 }
 
 // Lavapipe filters with eight bits, and rounds what comes out to as many: too coarse for normals.
-// There texels are filtered here.
+// There texels are decoded and filtered here.
 layout(constant_id = 2) const bool IS_COARSE = false;
 
 vec4 fetch_texel(uint which, ivec2 at, int level)
@@ -85,8 +85,8 @@ int wrap_index(int i, int n, uint wrap)
 // Bilinear in one level and, with lod between two, in the next: in one loop, see surface.glsl.
 vec4 filtered_exactly(uint which, vec4 size, vec2 uv, float lod)
 {
-    uint kind = uint(size.w); // nearest, wrap_u << 1, wrap_v << 3
-    uvec2 wrap = uvec2(kind >> 1 & 3u, kind >> 3);
+    uint kind = uint(size.w); // nearest, wrap_u << 1, wrap_v << 3, sRGB << 5
+    uvec2 wrap = uvec2(kind >> 1 & 3u, kind >> 3 & 3u);
     float fine = clamp(floor(lod), 0.0, size.z - 1.0);
     float between = fine < size.z - 1.0 ? clamp(lod - fine, 0.0, 1.0) : 0.0;
     int taps = between > 0.0 ? 8 : 4;
@@ -100,7 +100,12 @@ vec4 filtered_exactly(uint which, vec4 size, vec2 uv, float lod)
         t = (kind & 1u) != 0u && level == 0 ? step(vec2(0.5), t) : t;
         t = mix(1.0 - t, t, vec2(i & 1, i >> 1 & 1));
         to = ivec2(wrap_index(to.x, n.x, wrap.x), wrap_index(to.y, n.y, wrap.y));
-        sum += fetch_texel(which, to, level) * (t.x * t.y * (i < 4 ? 1.0 - between : between));
+        vec4 texel = fetch_texel(which, to, level);
+        if ((kind & 32u) != 0u) {
+            texel.xyz = vec3(hdrp_linear_from_srgb(texel.x), hdrp_linear_from_srgb(texel.y),
+                             hdrp_linear_from_srgb(texel.z));
+        }
+        sum += texel * (t.x * t.y * (i < 4 ? 1.0 - between : between));
     }
     return sum;
 }
