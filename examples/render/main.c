@@ -237,6 +237,7 @@ static bool begin_rendering(app* a)
     }
     if (a->options.backend == RD_BACKEND_VULKAN) {
         a->vk = rd_vk_open(&a->renderer, &a->report);
+        a->stats.device = a->vk ? rd_vk_device_name(a->vk) : NULL;
         return a->vk != NULL;
     }
     return true;
@@ -351,6 +352,9 @@ static bool finish(app* a)
     rd_stats_limit(&a->stats, "transparent_layers_dropped", (double)c->layers_dropped);
     count_lighting(a);
     count_lists(a);
+    if (a->vk) {
+        rd_vk_count(a->vk, &a->stats);
+    }
     if (!compare(a)) {
         return false;
     }

@@ -13,6 +13,9 @@ rd_vk* rd_vk_open(rd_renderer* r, rd_report* report);
 bool rd_vk_render(rd_vk* vk, rd_renderer* r, const rd_camera* camera);
 void rd_vk_close(rd_vk* vk);
 
+/* Limits that were hit. */
+void rd_vk_count(const rd_vk* vk, rd_stats* stats);
+
 const char* rd_vk_device_name(const rd_vk* vk);
 /* Of validation layers; 0 where they were not asked for. */
 unsigned rd_vk_messages(const rd_vk* vk);

@@ -5,9 +5,9 @@
 #include <string.h>
 
 /* A variable of the environment that asks for validation layers, and their synchronisation checks. */
-#define VALIDATE   "HDRP_RENDER_VALIDATE"
+#define VALIDATE     "HDRP_RENDER_VALIDATE"
 #define MESSAGES_MAX 10
-#define VALIDATION "VK_LAYER_KHRONOS_validation"
+#define VALIDATION   "VK_LAYER_KHRONOS_validation"
 
 bool rd_vk_check(rd_vk_device* d, VkResult result, const char* what)
 {
@@ -25,9 +25,9 @@ bool rd_vk_check(rd_vk_device* d, VkResult result, const char* what)
 
 bool rd_vk_check_hdrp(rd_vk_device* d, hdrp_result result, const char* what)
 {
-    return result == HDRP_OK ? true
-                             : rd_fail(d->report, "--backend vulkan", "%s: %s", what,
-                                       hdrp_result_string(result));
+    return result == HDRP_OK
+               ? true
+               : rd_fail(d->report, "--backend vulkan", "%s: %s", what, hdrp_result_string(result));
 }
 
 /* >>instance */
@@ -319,8 +319,7 @@ void rd_vk_mark(rd_vk_device* d, const char* pass)
 static bool read_marks(rd_vk_device* d)
 {
     uint64_t at[RD_VK_MARKS_MAX];
-    uint64_t mask =
-        d->timestamp_bits < 64 ? ((uint64_t)1 << d->timestamp_bits) - 1 : ~(uint64_t)0;
+    uint64_t mask = d->timestamp_bits < 64 ? ((uint64_t)1 << d->timestamp_bits) - 1 : ~(uint64_t)0;
     if (d->mark_count < 2 || !d->stats) {
         return true;
     }

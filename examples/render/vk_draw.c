@@ -28,8 +28,8 @@ static const struct {
     bool writes_depth;
     rd_vk_blend blend;
 } programs[RD_VK_PROGRAM_COUNT] = {
-    [RD_VK_PROGRAM_DEPTH] = {RD_VK_PASS_DEPTH, {NULL, 0}, VK_COMPARE_OP_GREATER, true,
-                             RD_VK_BLEND_NONE},
+    [RD_VK_PROGRAM_DEPTH] =
+        {RD_VK_PASS_DEPTH, {NULL, 0}, VK_COMPARE_OP_GREATER, true, RD_VK_BLEND_NONE},
     [RD_VK_PROGRAM_MASK] = {RD_VK_PASS_DEPTH, CODE(mask_frag), VK_COMPARE_OP_GREATER, true,
                             RD_VK_BLEND_NONE},
     [RD_VK_PROGRAM_GBUFFER] = {RD_VK_PASS_GBUFFER, CODE(gbuffer_frag), VK_COMPARE_OP_EQUAL, false,
@@ -126,8 +126,8 @@ static void draw(rd_vk* vk, rd_vk_program program, uint32_t mesh, uint32_t first
 void rd_vk_bind_frame(rd_vk* vk, int light)
 {
     vk->bound = VK_NULL_HANDLE;
-    vkCmdBindDescriptorSets(vk->device.commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
-                            vk->raster.layout, 0, 1, &vk->frame_set, 0, NULL);
+    vkCmdBindDescriptorSets(vk->device.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, vk->raster.layout,
+                            0, 1, &vk->frame_set, 0, NULL);
     if (vk->light.sets[light]) {
         vkCmdBindDescriptorSets(vk->device.commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
                                 vk->raster.layout, 2, 1, &vk->light.sets[light], 0, NULL);

@@ -1,4 +1,4 @@
-/* The Vulkan backend: what a frame reads, the order of its passes, its film. */
+/* The Vulkan backend: what a frame reads, and how all of it comes and goes. */
 #include "vk_frame.h"
 
 #include <math.h>
@@ -55,7 +55,7 @@ static void set_sky(rd_vk_frame* f, const rd_renderer* r)
     }
 }
 
-static void fill_frame(rd_vk* vk, const rd_sub_frame* s)
+void rd_vk_fill_frame(rd_vk* vk, const rd_sub_frame* s)
 {
     const rd_renderer* r = s->r;
     rd_vk_frame* f = &vk->values;
@@ -80,10 +80,10 @@ static void fill_frame(rd_vk* vk, const rd_sub_frame* s)
 static bool make_frame_layout(rd_vk* vk)
 {
     VkDescriptorSetLayoutBinding bindings[1 + FRAME_BUFFERS];
-    VkDescriptorSetLayoutCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-        .bindingCount = 1 + FRAME_BUFFERS,
-        .pBindings = bindings};
+    VkDescriptorSetLayoutCreateInfo info = {.sType =
+                                                VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+                                            .bindingCount = 1 + FRAME_BUFFERS,
+                                            .pBindings = bindings};
     memset(bindings, 0, sizeof bindings);
     for (uint32_t i = 0; i <= FRAME_BUFFERS; ++i) {
         bindings[i].binding = i;
@@ -93,8 +93,7 @@ static bool make_frame_layout(rd_vk* vk)
         bindings[i].stageFlags = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
     }
     return rd_vk_check(
-        &vk->device,
-        vkCreateDescriptorSetLayout(vk->device.device, &info, NULL, &vk->frame_layout),
+        &vk->device, vkCreateDescriptorSetLayout(vk->device.device, &info, NULL, &vk->frame_layout),
         "a layout of descriptors");
 }
 
@@ -102,8 +101,7 @@ static bool make_frame_set(rd_vk* vk)
 {
     const VkDescriptorPoolSize sizes[2] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
                                            {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, FRAME_BUFFERS}};
-    const VkDescriptorPoolCreateInfo pool = {.sType =
-                                                 VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+    const VkDescriptorPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                              .maxSets = 1,
                                              .poolSizeCount = 2,
                                              .pPoolSizes = sizes};
@@ -111,8 +109,8 @@ static bool make_frame_set(rd_vk* vk)
                                        .descriptorSetCount = 1,
                                        .pSetLayouts = &vk->frame_layout};
     const VkBuffer buffers[1 + FRAME_BUFFERS] = {
-        vk->frame.buffer.buffer,    vk->scene.meshes.buffer,  vk->scene.materials.buffer,
-        vk->scene.vertices.buffer,  vk->scene.indices.buffer, vk->order.buffer.buffer.buffer};
+        vk->frame.buffer.buffer,   vk->scene.meshes.buffer,  vk->scene.materials.buffer,
+        vk->scene.vertices.buffer, vk->scene.indices.buffer, vk->order.buffer.buffer.buffer};
     VkDevice device = vk->device.device;
     if (!rd_vk_check(&vk->device, vkCreateDescriptorPool(device, &pool, NULL, &vk->pool),
                      "descriptors")) {
@@ -147,13 +145,14 @@ static bool can_show(const rd_renderer* r, rd_report* report)
     if (r->options->quality == RD_QUALITY_REFERENCE && stage == RD_STAGE_LIGHTING) {
         return rd_fail(report, "--quality reference", "needs --backend cpu");
     }
-    if (stage == RD_STAGE_LISTS || view == RD_VIEW_DIFFUSE || view == RD_VIEW_SPECULAR || view == RD_VIEW_LAYERS || view == RD_VIEW_AO) {
+    if (stage == RD_STAGE_LISTS || view == RD_VIEW_DIFFUSE || view == RD_VIEW_SPECULAR ||
+        view == RD_VIEW_LAYERS || view == RD_VIEW_AO) {
         return rd_fail(report, "--view", "%s needs --backend cpu", rd_view_name(view));
     }
     return true;
 }
 
-static bool is_lit(const rd_renderer* r)
+bool rd_vk_is_lit(const rd_renderer* r)
 {
     return rd_view_stage_of(r->options->view) == RD_STAGE_LIGHTING;
 }
@@ -176,7 +175,7 @@ static bool make_all(rd_vk* vk, const rd_renderer* r)
     return make_frame_set(vk) &&
            rd_vk_raster_make(&vk->raster, &vk->device, (uint32_t)r->width, (uint32_t)r->height,
                              layouts, 3) &&
-           (!is_lit(r) || rd_vk_light_make(&vk->light, &vk->device, r, &vk->raster));
+           (!rd_vk_is_lit(r) || rd_vk_light_make(&vk->light, &vk->device, r, &vk->raster));
 }
 
 rd_vk* rd_vk_open(rd_renderer* r, rd_report* report)
@@ -220,6 +219,12 @@ void rd_vk_close(rd_vk* vk)
     free(vk);
 }
 
+void rd_vk_count(const rd_vk* vk, rd_stats* stats)
+{
+    rd_stats_limit(stats, "lights_without_shadow_maps", (double)vk->light.shadow.without);
+    rd_stats_limit(stats, "listed_lights_dropped", (double)vk->dropped);
+}
+
 unsigned rd_vk_messages(const rd_vk* vk)
 {
     return vk->device.messages;
@@ -228,232 +233,4 @@ unsigned rd_vk_messages(const rd_vk* vk)
 const char* rd_vk_device_name(const rd_vk* vk)
 {
     return vk->device.properties.deviceName;
-}
-
-/* >>passes */
-
-static void depth_prepass(rd_vk* vk)
-{
-    rd_vk_pass_begin(&vk->raster, &vk->device, RD_VK_PASS_DEPTH);
-    rd_vk_draw_meshes(vk, RD_VK_PROGRAM_DEPTH, RD_VK_SOLID);
-    rd_vk_draw_meshes(vk, RD_VK_PROGRAM_MASK, RD_VK_MASKED);
-    rd_vk_pass_end(&vk->device);
-    rd_vk_mark(&vk->device, "depth prepass");
-}
-
-/* Depth from now on is only tested and read. */
-static void keep_depth(rd_vk* vk)
-{
-    rd_vk_layout(&vk->device, &vk->raster.targets[RD_VK_DEPTH],
-                 VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
-                 VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL);
-}
-
-static void clear_lit(rd_vk* vk, VkImageLayout after)
-{
-    const VkClearColorValue zero = {{0.0f, 0.0f, 0.0f, 0.0f}};
-    const VkImageSubresourceRange all = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-    const rd_vk_image* lit = &vk->raster.targets[RD_VK_LIT];
-    rd_vk_layout(&vk->device, lit, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-    vkCmdClearColorImage(vk->device.commands, lit->base.image,
-                         VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &zero, 1, &all);
-    rd_vk_layout(&vk->device, lit, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                 after);
-}
-
-static void view(rd_vk* vk, const rd_sub_frame* s)
-{
-    clear_lit(vk, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-    rd_vk_pass_begin(&vk->raster, &vk->device, RD_VK_PASS_LIT);
-    rd_vk_draw_meshes(vk, RD_VK_PROGRAM_VIEW, RD_VK_ALL);
-    if (rd_view_stage_of(s->r->options->view) == RD_STAGE_MATERIAL) {
-        rd_vk_draw_layers(vk, RD_VK_PROGRAM_VIEW_LAYER);
-    }
-    rd_vk_pass_end(&vk->device);
-    rd_vk_mark(&vk->device, "view");
-}
-
-static void gbuffer(rd_vk* vk)
-{
-    rd_vk_pass_begin(&vk->raster, &vk->device, RD_VK_PASS_GBUFFER);
-    rd_vk_draw_meshes(vk, RD_VK_PROGRAM_GBUFFER, RD_VK_ALL);
-    rd_vk_pass_end(&vk->device);
-    for (int i = RD_VK_RT0; i <= RD_VK_NORMALS; ++i) {
-        rd_vk_layout(&vk->device, &vk->raster.targets[i], VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                     VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-    }
-    rd_vk_mark(&vk->device, "GBuffer");
-}
-
-/* The camera of lists and lighting: as in lists.c, samples are the centres of its pixels. */
-static hdrp_cull_camera cull_camera(const rd_vk* vk, const rd_sub_frame* s)
-{
-    const rd_camera* c = &s->r->camera;
-    float w = (float)c->width_px, h = (float)c->height_px;
-    float x = s->jitter.x - 0.5f, y = s->jitter.y - 0.5f;
-    float left = (2.0f * x / w - 1.0f) * c->half_width;
-    float right = (2.0f * (x + w) / w - 1.0f) * c->half_width;
-    float top = (1.0f - 2.0f * y / h) * c->half_height;
-    float bottom = (1.0f - 2.0f * (y + h) / h) * c->half_height;
-    float near_m = vk->values.depths_exposure.x;
-    return (c->orthographic ? hdrp_cull_camera_orthographic : hdrp_cull_camera_perspective)(
-        c->eye, c->forward, c->up, left, right, bottom, top, near_m, HDRP_CULL_FAR_INFINITE);
-}
-
-static bool deferred(rd_vk* vk, const rd_sub_frame* s)
-{
-    rd_vk_device* d = &vk->device;
-    const rd_vk_image* lit = &vk->raster.targets[RD_VK_LIT];
-    hdrp_cull_camera camera = cull_camera(vk, s);
-    hdrp_v4 at = vk->values.depths_exposure;
-    bool ok = rd_vk_check_hdrp(d, hdrp_gpu_vk_begin_frame(&d->gpu, 0), "a frame") &&
-              rd_vk_light_begin(&vk->light, d, &vk->raster, &camera, hdrp_v2_make(at.x, at.y),
-                                s->r->exposure);
-    clear_lit(vk, VK_IMAGE_LAYOUT_GENERAL);
-    ok = ok && rd_vk_light_deferred(&vk->light, d, &vk->raster);
-    rd_vk_layout(d, lit, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-    return ok;
-}
-
-static void forward(rd_vk* vk)
-{
-    rd_vk_pass_begin(&vk->raster, &vk->device, RD_VK_PASS_LIT);
-    rd_vk_draw_meshes(vk, RD_VK_PROGRAM_FORWARD, RD_VK_FORWARD);
-    rd_vk_draw_screen(vk, RD_VK_PROGRAM_SKY);
-    rd_vk_pass_end(&vk->device);
-    rd_vk_mark(&vk->device, "forward opaque and sky");
-}
-
-static void draw_layers(rd_vk* vk, rd_vk_pass pass, rd_vk_program program)
-{
-    rd_vk_pass_begin(&vk->raster, &vk->device, pass);
-    rd_vk_draw_layers(vk, program);
-    rd_vk_pass_end(&vk->device);
-}
-
-/* Glass does not see what is straight behind it: its light and what it lets through are kept apart
- * from the opaque picture. */
-static void glass(rd_vk* vk)
-{
-    rd_vk_keep_opaque(vk);
-    draw_layers(vk, RD_VK_PASS_LAYERS, RD_VK_PROGRAM_LAYER_APART);
-    draw_layers(vk, RD_VK_PASS_BEHIND, RD_VK_PROGRAM_BEND);
-    for (int i = RD_VK_LAYER_LIGHT; i <= RD_VK_LAYER_DIRECTION; ++i) {
-        rd_vk_layout(&vk->device, &vk->raster.targets[i], VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                     VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-    }
-    rd_vk_pass_begin(&vk->raster, &vk->device, RD_VK_PASS_LIT);
-    rd_vk_draw_screen(vk, RD_VK_PROGRAM_COMPOSITE);
-    rd_vk_pass_end(&vk->device);
-}
-
-static void transparent(rd_vk* vk)
-{
-    if (rd_vk_has_glass(vk)) {
-        glass(vk);
-    } else {
-        draw_layers(vk, RD_VK_PASS_LIT, RD_VK_PROGRAM_LAYER);
-    }
-    rd_vk_mark(&vk->device, "transparent surfaces");
-}
-
-/* The order of the talk. */
-static bool lighting(rd_vk* vk, const rd_sub_frame* s)
-{
-    gbuffer(vk);
-    keep_depth(vk);
-    if (!deferred(vk, s)) {
-        return false;
-    }
-    forward(vk);
-    if (vk->order.count > 0) {
-        transparent(vk);
-    }
-    return true;
-}
-
-static void read_back(rd_vk* vk)
-{
-    const rd_vk_image* lit = &vk->raster.targets[RD_VK_LIT];
-    const VkBufferImageCopy region = {.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-                                      .imageExtent = {vk->raster.width, vk->raster.height, 1}};
-    rd_vk_layout(&vk->device, lit, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                 VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
-    vkCmdCopyImageToBuffer(vk->device.commands, lit->base.image,
-                           VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, vk->picture.buffer.buffer, 1,
-                           &region);
-    rd_vk_barrier(&vk->device);
-    rd_vk_mark(&vk->device, "read back");
-}
-
-/* The film holds nits, or what a view shows. */
-static void add_to_film(rd_vk* vk, rd_renderer* r)
-{
-    size_t pixels = (size_t)r->width * (size_t)r->height;
-    const float* from = (const float*)vk->picture.at;
-    float k = is_lit(r) ? 1.0f / r->exposure : 1.0f;
-    for (size_t i = 0; i < pixels; ++i) {
-        for (size_t c = 0; c < 3; ++c) {
-            r->film[i * 4 + c] += from[i * 4 + c] * k;
-        }
-        r->film[i * 4 + 3] += from[i * 4 + 3];
-    }
-}
-
-static bool sub_frame(rd_vk* vk, const rd_sub_frame* s)
-{
-    fill_frame(vk, s);
-    if (!rd_vk_begin(&vk->device)) {
-        return false;
-    }
-    depth_prepass(vk);
-    if (is_lit(s->r)) {
-        lighting(vk, s);
-    } else {
-        keep_depth(vk);
-        view(vk, s);
-    }
-    read_back(vk);
-    if (vk->device.report->failed || !rd_vk_run(&vk->device)) {
-        return false;
-    }
-    add_to_film(vk, s->r);
-    return true;
-}
-
-/* Once for all samples: cascades do not move with them. */
-static bool shadows(rd_vk* vk, const rd_renderer* r)
-{
-    rd_vk_shadow* s = &vk->light.shadow;
-    if (!s->present) {
-        return true;
-    }
-    if (!rd_vk_shadow_aim(s, &vk->device, r, vk->light.lists.items) || !rd_vk_begin(&vk->device)) {
-        return false;
-    }
-    rd_vk_draw_shadows(vk);
-    return !vk->device.report->failed && rd_vk_run(&vk->device);
-}
-
-bool rd_vk_render(rd_vk* vk, rd_renderer* r, const rd_camera* camera)
-{
-    size_t values = (size_t)r->width * (size_t)r->height * 4;
-    rd_sub_frame s;
-    bool ok = true;
-    r->camera = *camera;
-    s.r = r;
-    memset(r->film, 0, values * sizeof *r->film);
-    rd_vk_order_sort(vk, camera);
-    ok = !is_lit(r) || shadows(vk, r);
-    for (int i = 0; ok && i < r->spp; ++i) {
-        s.index = (uint32_t)i;
-        s.jitter = rd_camera_jitter(s.index, r->options->seed);
-        rd_progress_show(r->progress, "GPU", (double)i, (double)r->spp);
-        ok = sub_frame(vk, &s);
-    }
-    for (size_t i = 0; i < values; ++i) {
-        r->film[i] *= 1.0f / (float)r->spp;
-    }
-    rd_progress_end(r->progress);
-    return ok;
 }

@@ -58,10 +58,15 @@ struct rd_vk {
     VkDescriptorSet frame_set;
     VkPipeline programs[RD_VK_PROGRAM_COUNT], casters[2][2], bound;
     rd_vk_frame values;
+    uint64_t dropped; /* lights that lists had no room for */
 };
 
 /* What forward lighting is compiled for, beside materials. */
 #define RD_VK_FORWARD_WORD (HDRP_GPU_VK_WORD_ALL & ~HDRP_GPU_VK_WORD_NEGATIVE)
+
+/* vk_frame.c */
+bool rd_vk_is_lit(const rd_renderer* r);
+void rd_vk_fill_frame(rd_vk* vk, const rd_sub_frame* s);
 
 /* vk_order.c */
 bool rd_vk_order_make(rd_vk* vk);

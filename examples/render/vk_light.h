@@ -38,7 +38,7 @@ typedef struct rd_vk_light {
     rd_vk_lists lists;
     rd_vk_shadow shadow;
     hdrp_gpu_vk_buffer nothing; /* zeros stand for lists that are not there */
-    rd_vk_mapped params[2];              /* of opaque surfaces, of layers */
+    rd_vk_mapped params[2];     /* of opaque surfaces, of layers */
     hdrp_gpu_vk_image fgd;
     rd_vk_image specular, irradiance, sky, sky_cube;
     rd_vk_image behind, behind_depth; /* the opaque picture */
@@ -56,6 +56,9 @@ typedef struct rd_vk_light {
 
 /* The layout alone is there for pictures without light. */
 bool rd_vk_light_layout_make(rd_vk_light* l, rd_vk_device* d);
+bool rd_vk_light_sets_make(rd_vk_light* l, rd_vk_device* d);
+void rd_vk_light_set_write(const rd_vk_light* l, rd_vk_device* d, const rd_vk_raster* raster,
+                           int which);
 bool rd_vk_light_make(rd_vk_light* l, rd_vk_device* d, const rd_renderer* r,
                       const rd_vk_raster* raster);
 void rd_vk_light_free(rd_vk_light* l, rd_vk_device* d);

@@ -104,8 +104,8 @@ bool rd_vk_lists_make(rd_vk_lists* l, rd_vk_device* d, const rd_renderer* r, rd_
     if (!make_records(l, d, r, shadow)) {
         return false;
     }
-    l->ready = r->options->features & RD_FEATURE_LISTS && r->options->features & RD_FEATURE_LIGHTS &&
-               l->listed + l->directional > 0u;
+    l->ready = r->options->features & RD_FEATURE_LISTS &&
+               r->options->features & RD_FEATURE_LIGHTS && l->listed + l->directional > 0u;
     return !l->ready || (make_grid(l, d, r, 0) && make_grid(l, d, r, 1));
 }
 

@@ -7,11 +7,11 @@
 #include "vk_shadow.h"
 
 typedef struct rd_vk_lists {
-    hdrp_light* items;             /* those of lists, then directional ones */
+    hdrp_light* items; /* those of lists, then directional ones */
     uint32_t listed, directional;
-    bool ready;                    /* lists are built; else surfaces visit all lights */
+    bool ready; /* lists are built; else surfaces visit all lights */
     hdrp_gpu_vk_buffer records, shapes;
-    hdrp_gpu_vk_lists grids[2];    /* tiles, for opaque surfaces; clusters, for layers */
+    hdrp_gpu_vk_lists grids[2]; /* tiles, for opaque surfaces; clusters, for layers */
     rd_vk_mapped dropped[2];
 } rd_vk_lists;
 

@@ -107,8 +107,8 @@ bool rd_vk_image_make(rd_vk_device* d, const rd_vk_image_desc* desc, rd_vk_image
     memset(image, 0, sizeof *image);
     if (desc->width > d->properties.limits.maxImageDimension2D ||
         desc->height > d->properties.limits.maxImageDimension2D) {
-        return rd_fail(d->report, d->properties.deviceName, "has no images of %u x %u",
-                       desc->width, desc->height);
+        return rd_fail(d->report, d->properties.deviceName, "has no images of %u x %u", desc->width,
+                       desc->height);
     }
     image->base.format = info.format = desc->format;
     image->base.width_px = info.extent.width = desc->width;

@@ -57,8 +57,7 @@ static key key_of(const rd_vk* vk, uint32_t mesh, uint32_t triangle, const rd_ca
     hdrp_v3 to = c->orthographic ? c->forward : hdrp_v3_sub(p, c->eye);
     key k;
     k.mesh_depth = depth_at(hdrp_v3_from_v4(vk->scene.balls[mesh]), c);
-    k.depth =
-        depth_at(hdrp_v3_scale(hdrp_v3_add(hdrp_v3_add(p, q), r), 1.0f / 3.0f), c);
+    k.depth = depth_at(hdrp_v3_scale(hdrp_v3_add(hdrp_v3_add(p, q), r), 1.0f / 3.0f), c);
     k.mesh = mesh;
     k.is_front = hdrp_v3_dot(n, to) < 0.0f;
     k.triangle = triangle;

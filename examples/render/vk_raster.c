@@ -36,7 +36,11 @@ static bool make_targets(rd_vk_raster* r, rd_vk_device* d)
 {
     bool ok = true;
     for (int i = 0; ok && i < RD_VK_TARGET_COUNT; ++i) {
-        rd_vk_image_desc desc = {format_of(d, i), r->width, r->height, 1, 1,
+        rd_vk_image_desc desc = {format_of(d, i),
+                                 r->width,
+                                 r->height,
+                                 1,
+                                 1,
                                  VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
                                      VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
                                      VK_IMAGE_USAGE_TRANSFER_DST_BIT,
@@ -45,9 +49,8 @@ static bool make_targets(rd_vk_raster* r, rd_vk_device* d)
             desc.usage |= VK_IMAGE_USAGE_STORAGE_BIT;
         }
         if (i == RD_VK_DEPTH) {
-            desc.usage =
-                VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
-                VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+            desc.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+                         VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
             desc.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
         }
         ok = rd_vk_image_make(d, &desc, &r->targets[i]);
@@ -142,8 +145,7 @@ static VkResult make_pass(rd_vk_raster* r, rd_vk_device* d, rd_vk_pass pass)
         attachments[i] = attachment(format_of(d, (int)colors[i]), pass != RD_VK_PASS_LIT,
                                     VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
     }
-    attachments[count] =
-        attachment(formats[RD_VK_DEPTH], pass == RD_VK_PASS_DEPTH, depth_layout);
+    attachments[count] = attachment(formats[RD_VK_DEPTH], pass == RD_VK_PASS_DEPTH, depth_layout);
     rd_vk_pass_order(dependencies);
     return vkCreateRenderPass(d->device, &info, NULL, &r->passes[pass]);
 }
@@ -172,12 +174,12 @@ bool rd_vk_raster_make(rd_vk_raster* r, rd_vk_device* d, uint32_t width, uint32_
 {
     const VkPushConstantRange push = {VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
                                       16};
-    const VkPipelineLayoutCreateInfo layout = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
-        .setLayoutCount = set_count,
-        .pSetLayouts = sets,
-        .pushConstantRangeCount = 1,
-        .pPushConstantRanges = &push};
+    const VkPipelineLayoutCreateInfo layout = {.sType =
+                                                   VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+                                               .setLayoutCount = set_count,
+                                               .pSetLayouts = sets,
+                                               .pushConstantRangeCount = 1,
+                                               .pPushConstantRanges = &push};
     bool ok;
     memset(r, 0, sizeof *r);
     r->width = width;
@@ -308,20 +310,20 @@ static VkResult make_pipeline(const rd_vk_raster* r, rd_vk_device* d,
         .sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
         .dynamicStateCount = 2,
         .pDynamicStates = dynamic};
-    const VkGraphicsPipelineCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
-        .stageCount = desc->fragment.words ? 2 : 1,
-        .pStages = stages,
-        .pVertexInputState = &vertices,
-        .pInputAssemblyState = &assembly,
-        .pViewportState = &viewport,
-        .pRasterizationState = &raster,
-        .pMultisampleState = &samples,
-        .pDepthStencilState = &depth,
-        .pColorBlendState = &blend,
-        .pDynamicState = &state,
-        .layout = r->layout,
-        .renderPass = r->passes[desc->pass]};
+    const VkGraphicsPipelineCreateInfo info = {.sType =
+                                                   VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
+                                               .stageCount = desc->fragment.words ? 2 : 1,
+                                               .pStages = stages,
+                                               .pVertexInputState = &vertices,
+                                               .pInputAssemblyState = &assembly,
+                                               .pViewportState = &viewport,
+                                               .pRasterizationState = &raster,
+                                               .pMultisampleState = &samples,
+                                               .pDepthStencilState = &depth,
+                                               .pColorBlendState = &blend,
+                                               .pDynamicState = &state,
+                                               .layout = r->layout,
+                                               .renderPass = r->passes[desc->pass]};
     blend.attachmentCount = colors_of(desc->pass, colors);
     for (uint32_t i = 0; i < blend.attachmentCount; ++i) {
         blends[i] = desc->blend == RD_VK_BLEND_BEHIND ? blending_behind(i) : blending(desc->blend);

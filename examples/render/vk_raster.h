@@ -10,9 +10,9 @@ typedef enum rd_vk_target {
     RD_VK_RT2,
     RD_VK_RT3,
     RD_VK_RT4,
-    RD_VK_KINDS,   /* rd_pixel_kind */
-    RD_VK_NORMALS, /* of triangles, for shadows */
-    RD_VK_LIT,   /* luminance times exposure, coverage */
+    RD_VK_KINDS,       /* rd_pixel_kind */
+    RD_VK_NORMALS,     /* of triangles, for shadows */
+    RD_VK_LIT,         /* luminance times exposure, coverage */
     RD_VK_LAYER_LIGHT, /* of layers alone */
     RD_VK_LAYER_THROUGH,
     RD_VK_LAYER_MOVED,
@@ -59,7 +59,7 @@ typedef struct rd_vk_code {
 
 typedef enum rd_vk_blend {
     RD_VK_BLEND_NONE,
-    RD_VK_BLEND_OVER, /* premultiplied alpha */
+    RD_VK_BLEND_OVER,  /* premultiplied alpha */
     RD_VK_BLEND_LAYER, /* second output: what is let through */
     RD_VK_BLEND_BEHIND /* of bend.frag: product, sum, largest, last */
 } rd_vk_blend;

@@ -152,10 +152,10 @@ static void set_factors(rd_vk_material* r, const rd_scene* scene, const rd_mater
 {
     r->base_alpha = hdrp_v4_from_v3(m->base_color, m->alpha);
     r->emission_cutoff = hdrp_v4_from_v3(m->emission_nits, m->alpha_cutoff);
-    r->surface = hdrp_v4_make(m->metallic, m->perceptual_roughness, m->normal_scale,
-                              m->occlusion_strength);
-    r->coat = hdrp_v4_make(m->coat, m->coat_perceptual_roughness, m->coat_normal_scale,
-                           m->anisotropy);
+    r->surface =
+        hdrp_v4_make(m->metallic, m->perceptual_roughness, m->normal_scale, m->occlusion_strength);
+    r->coat =
+        hdrp_v4_make(m->coat, m->coat_perceptual_roughness, m->coat_normal_scale, m->anisotropy);
     r->film =
         hdrp_v4_make(m->film, m->film_ior, m->film_thickness_min_nm, m->film_thickness_max_nm);
     r->specular = hdrp_v4_from_v3(m->specular_color, m->specular);
@@ -210,14 +210,14 @@ static bool upload_materials(rd_vk_scene* s, rd_vk_device* d)
 
 static bool upload_texture(rd_vk_device* d, const rd_texture* t, rd_vk_image* image)
 {
-    const rd_vk_image_desc desc = {
-        t->is_srgb && !rd_vk_is_coarse(d) ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM,
-        (uint32_t)t->width,
-        (uint32_t)t->height,
-        (uint32_t)t->level_count,
-        1,
-        VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
-        0};
+    const rd_vk_image_desc desc = {t->is_srgb && !rd_vk_is_coarse(d) ? VK_FORMAT_R8G8B8A8_SRGB
+                                                                     : VK_FORMAT_R8G8B8A8_UNORM,
+                                   (uint32_t)t->width,
+                                   (uint32_t)t->height,
+                                   (uint32_t)t->level_count,
+                                   1,
+                                   VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+                                   0};
     size_t offsets[RD_TEXTURE_MAX_LEVELS], bytes = 0;
     for (int i = 0; i < t->level_count; ++i) {
         size_t w = (size_t)(t->width >> i ? t->width >> i : 1);
@@ -261,11 +261,10 @@ static bool upload_textures(rd_vk_scene* s, rd_vk_device* d)
 
 static bool make_samplers(rd_vk_scene* s, rd_vk_device* d)
 {
-    static const VkSamplerAddressMode modes[3] = {[RD_WRAP_REPEAT] = VK_SAMPLER_ADDRESS_MODE_REPEAT,
-                                                  [RD_WRAP_CLAMP] =
-                                                      VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
-                                                  [RD_WRAP_MIRROR] =
-                                                      VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT};
+    static const VkSamplerAddressMode modes[3] = {
+        [RD_WRAP_REPEAT] = VK_SAMPLER_ADDRESS_MODE_REPEAT,
+        [RD_WRAP_CLAMP] = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+        [RD_WRAP_MIRROR] = VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT};
     bool ok = true;
     for (int n = 0; n < 2; ++n) {
         for (int u = 0; u < 3; ++u) {
@@ -292,14 +291,14 @@ static bool make_layout(rd_vk_scene* s, rd_vk_device* d)
         .pBindings = &binding};
     const VkDescriptorPoolSize size = {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                                        RD_GPU_TEXTURES * materials};
-    const VkDescriptorPoolCreateInfo pool_info = {
-        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-        .maxSets = materials,
-        .poolSizeCount = 1,
-        .pPoolSizes = &size};
-    return rd_vk_check(
-               d, vkCreateDescriptorSetLayout(d->device, &layout, NULL, &s->material_layout),
-               "a layout of descriptors") &&
+    const VkDescriptorPoolCreateInfo pool_info = {.sType =
+                                                      VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                                                  .maxSets = materials,
+                                                  .poolSizeCount = 1,
+                                                  .pPoolSizes = &size};
+    return rd_vk_check(d,
+                       vkCreateDescriptorSetLayout(d->device, &layout, NULL, &s->material_layout),
+                       "a layout of descriptors") &&
            rd_vk_check(d, vkCreateDescriptorPool(d->device, &pool_info, NULL, &s->pool),
                        "descriptors");
 }
@@ -364,8 +363,8 @@ bool rd_vk_scene_make(rd_vk_scene* s, rd_vk_device* d, const rd_scene* scene)
 {
     memset(s, 0, sizeof *s);
     s->scene = scene;
-    return upload_meshes(s, d) && make_balls(s, d) && upload_materials(s, d) && upload_textures(s, d) &&
-           make_samplers(s, d) && make_layout(s, d) && make_sets(s, d);
+    return upload_meshes(s, d) && make_balls(s, d) && upload_materials(s, d) &&
+           upload_textures(s, d) && make_samplers(s, d) && make_layout(s, d) && make_sets(s, d);
 }
 
 void rd_vk_scene_free(rd_vk_scene* s, rd_vk_device* d)

@@ -27,7 +27,7 @@ typedef struct rd_vk_material {
 typedef struct rd_vk_scene {
     const rd_scene* scene;
     hdrp_gpu_vk_buffer meshes, materials, vertices, indices;
-    rd_vk_image* textures; /* two more than the scene has: white */
+    rd_vk_image* textures;       /* two more than the scene has: white */
     VkSampler samplers[2][3][3]; /* by rd_texture.is_nearest, wrap_u, wrap_v */
     VkDescriptorSetLayout material_layout;
     VkDescriptorPool pool;

@@ -9,11 +9,11 @@
 #define LIGHT_PX    512u
 #define CASCADES    HDRP_SHADOW_CASCADES_MAX
 /* Drawing more takes longer than a picture is worth. */
-#define VIEWS_MAX   1024u
+#define VIEWS_MAX 1024u
 /* The nearest casters of a light, as a share of its range. */
-#define NEAREST     2e-3f
+#define NEAREST 2e-3f
 /* How logarithmic the ends of cascades are. */
-#define LOG_WEIGHT  0.7f
+#define LOG_WEIGHT 0.7f
 
 /* Reverse depth. */
 static hdrp_shadow_settings settings(void)
@@ -93,8 +93,7 @@ static void assign(rd_vk_shadow* s, hdrp_light* records, const hdrp_shadow_reque
         if (!is_directional) {
             /* What is inside of a lamp does not keep its light in. */
             float nearest_m = hdrp_max(NEAREST * l->position_range.w, l->forward_radius.w);
-            s->views[view] =
-                hdrp_shadow_view_light(*l, k, nearest_m, s->maps[view], settings());
+            s->views[view] = hdrp_shadow_view_light(*l, k, nearest_m, s->maps[view], settings());
         }
     }
 }
@@ -112,10 +111,9 @@ static bool place(rd_vk_shadow* s, rd_vk_device* d, hdrp_light* records,
     s->light_of_view = (uint32_t*)calloc(maps + 1, sizeof *s->light_of_view);
     ok = order && s->maps && s->views && s->light_of_view;
     ok = (ok || rd_fail(d->report, "--backend vulkan", "out of memory")) &&
-         rd_vk_check_hdrp(d,
-                          hdrp_shadow_place(ATLAS_PX, SMALLEST_PX, requests, count, order, s->maps,
-                                            NULL),
-                          "an atlas of shadows");
+         rd_vk_check_hdrp(
+             d, hdrp_shadow_place(ATLAS_PX, SMALLEST_PX, requests, count, order, s->maps, NULL),
+             "an atlas of shadows");
     for (uint32_t i = 0; ok && i < count; ++i) {
         bool is_directional = lights[i] >= listed;
         assign(s, records, &requests[i], lights[i], is_directional);
@@ -170,14 +168,14 @@ static bool make_pass(rd_vk_shadow* s, rd_vk_device* d)
 
 static bool make_images(rd_vk_shadow* s, rd_vk_device* d, const rd_renderer* r)
 {
-    const rd_vk_image_desc desc = {
-        VK_FORMAT_D32_SFLOAT,
-        ATLAS_PX,
-        ATLAS_PX,
-        1,
-        1,
-        VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
-        VK_IMAGE_ASPECT_DEPTH_BIT};
+    const rd_vk_image_desc desc = {VK_FORMAT_D32_SFLOAT,
+                                   ATLAS_PX,
+                                   ATLAS_PX,
+                                   1,
+                                   1,
+                                   VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
+                                       VK_IMAGE_USAGE_SAMPLED_BIT,
+                                   VK_IMAGE_ASPECT_DEPTH_BIT};
     size_t bytes = (size_t)s->view_count * sizeof *s->views;
     return rd_vk_image_make(d, &desc, &s->atlas) && make_pass(s, d) &&
            rd_vk_check_hdrp(

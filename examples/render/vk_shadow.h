@@ -9,10 +9,11 @@
 typedef struct rd_vk_shadow {
     bool present;
     uint32_t view_count;
-    uint32_t cascades[HDRP_GPU_VK_SHADOW_LIGHTS]; /* views of each directional light, which are first */
-    uint32_t masked;                              /* directional lights that have some */
-    uint32_t without;                             /* lights that got no map */
-    uint32_t* light_of_view;                      /* record */
+    uint32_t
+        cascades[HDRP_GPU_VK_SHADOW_LIGHTS]; /* views of each directional light, which are first */
+    uint32_t masked;                         /* directional lights that have some */
+    uint32_t without;                        /* lights that got no map */
+    uint32_t* light_of_view;                 /* record */
     hdrp_u32x4* maps;
     hdrp_shadow_view* views; /* also in the buffer */
     rd_vk_mapped buffer;

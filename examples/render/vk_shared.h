@@ -24,12 +24,12 @@
 #define RD_GPU_DETAILS                 2
 #define RD_GPU_TEXTURES                17
 
-#define RD_GPU_ALPHA_OPAQUE 0u
-#define RD_GPU_ALPHA_MASK   1u
-#define RD_GPU_ALPHA_BLEND  2u
+#define RD_GPU_ALPHA_OPAQUE            0u
+#define RD_GPU_ALPHA_MASK              1u
+#define RD_GPU_ALPHA_BLEND             2u
 
-#define RD_GPU_DOUBLE_SIDED 1u
-#define RD_GPU_UNLIT        2u
+#define RD_GPU_DOUBLE_SIDED            1u
+#define RD_GPU_UNLIT                   2u
 
 /* As RD_FEATURE_... */
 #define RD_GPU_FEATURE_NORMAL_MAPS (1u << 4)

@@ -48,7 +48,7 @@ static bool light(studio* s)
 {
     const float fov = s->options.fov_deg * (HDRP_PI / 180.0f);
     const rd_options* o = &s->options;
-    rd_environment_desc d = {NULL,   "sky", HDRP_PI, 0.75f, -0.65f, {0.24f, 0.22f, 0.19f},
+    rd_environment_desc d = {NULL,      "sky", HDRP_PI, 0.75f, -0.65f, {0.24f, 0.22f, 0.19f},
                              o->quality};
     rd_lighting_desc l = {&s->scene, s->trace, &s->environment, o};
     if (s->scene.has_sky) {
@@ -94,9 +94,9 @@ static hdrp_v3 normal_of(const rd_scene* scene, const rd_hit* hit)
     const rd_mesh* m = &scene->meshes[hit->mesh];
     const uint32_t* i = m->indices + (size_t)hit->triangle * 3;
     hdrp_v3 a = m->positions[i[0]];
-    return hdrp_normalize_or(hdrp_v3_cross(hdrp_v3_sub(m->positions[i[1]], a),
-                                           hdrp_v3_sub(m->positions[i[2]], a)),
-                             hdrp_v3_splat(0.0f));
+    return hdrp_normalize_or(
+        hdrp_v3_cross(hdrp_v3_sub(m->positions[i[1]], a), hdrp_v3_sub(m->positions[i[2]], a)),
+        hdrp_v3_splat(0.0f));
 }
 
 /* Rasterisers place corners on a grid of 1/256 of a pixel. */
@@ -158,8 +158,8 @@ static bool continues(const rd_renderer* r, const layer* layers, size_t a, size_
     const layer *p = &layers[a], *q = &layers[b];
     const hdrp_v3* n = r->gbuffer.geometric_normals;
     if (p->mesh != q->mesh || p->count != q->count ||
-        (p->count && (hdrp_v3_dot(p->normal, q->normal) < 0.9f ||
-                      fabsf(p->t - q->t) > 0.05f * p->t))) {
+        (p->count &&
+         (hdrp_v3_dot(p->normal, q->normal) < 0.9f || fabsf(p->t - q->t) > 0.05f * p->t))) {
         return false;
     }
     if (x->mesh != y->mesh || x->mesh == RD_NO_HIT) {
@@ -211,7 +211,8 @@ static void paint(const studio* s, const layer* layers, const float* cpu, const 
 }
 
 /* Relative to what is there, or a thousandth of what the picture shows as white. */
-static bool compare(const studio* s, const layer* layers, const float* cpu, const float* gpu, limits most)
+static bool compare(const studio* s, const layer* layers, const float* cpu, const float* gpu,
+                    limits most)
 {
     const rd_renderer* r = &s->renderer;
     float exposure = hdrp_light_exposure_saturation(s->ev100);
@@ -277,7 +278,8 @@ static int run(studio* s, limits most)
     printf("%s: ", rd_vk_device_name(vk));
     ok = rd_vk_render(vk, &s->renderer, &s->camera);
     gpu = copy_film(&s->renderer);
-    ok = ok && cpu && gpu && layers && compare(s, layers, cpu, gpu, most) && rd_vk_messages(vk) == 0;
+    ok =
+        ok && cpu && gpu && layers && compare(s, layers, cpu, gpu, most) && rd_vk_messages(vk) == 0;
     rd_vk_close(vk);
     free(cpu);
     free(gpu);
