@@ -71,7 +71,7 @@ void rd_vk_fill_frame(rd_vk* vk, const rd_sub_frame* s);
 /* vk_order.c */
 bool rd_vk_order_make(rd_vk* vk);
 void rd_vk_order_free(rd_vk* vk);
-void rd_vk_order_sort(rd_vk* vk, const rd_camera* camera);
+void rd_vk_order_sort(rd_vk* vk, const rd_camera* camera, uint32_t features);
 
 /* vk_draw.c */
 /* Which opaque meshes. */

@@ -98,7 +98,14 @@ static void find_runs(rd_vk_order* o)
     }
 }
 
-void rd_vk_order_sort(rd_vk* vk, const rd_camera* camera)
+static bool is_shown(const rd_scene* scene, int mesh, uint32_t features)
+{
+    const rd_material* m = &scene->materials[scene->meshes[mesh].material];
+    return is_layer(scene, mesh) &&
+           (features & RD_FEATURE_ALPHA_BLEND || m->alpha_mode != RD_ALPHA_BLEND);
+}
+
+void rd_vk_order_sort(rd_vk* vk, const rd_camera* camera, uint32_t features)
 {
     const rd_scene* scene = vk->scene.scene;
     rd_vk_order* o = &vk->order;
@@ -106,7 +113,7 @@ void rd_vk_order_sort(rd_vk* vk, const rd_camera* camera)
     o->count = 0;
     for (int i = 0; i < scene->mesh_count; ++i) {
         const rd_mesh* m = &scene->meshes[i];
-        for (uint32_t t = 0; is_layer(scene, i) && t < m->triangle_count; ++t) {
+        for (uint32_t t = 0; is_shown(scene, i, features) && t < m->triangle_count; ++t) {
             keys[o->count++] = key_of(vk, (uint32_t)i, t, camera);
         }
     }

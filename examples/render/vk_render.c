@@ -214,7 +214,7 @@ bool rd_vk_render(rd_vk* vk, rd_renderer* r, const rd_camera* camera)
     r->camera = *camera;
     s.r = r;
     memset(r->film, 0, values * sizeof *r->film);
-    rd_vk_order_sort(vk, camera);
+    rd_vk_order_sort(vk, camera, r->options->features);
     ok = !rd_vk_is_lit(r) || shadows(vk, r);
     for (int i = 0; ok && i < r->spp; ++i) {
         s.index = (uint32_t)i;

@@ -18,9 +18,13 @@ void main()
     bool bends = data.volume_thickness_m > 0.0;
     vec2 straight = floor(gl_FragCoord.xy) + frame.jitter_size.xy;
     vec3 source = s.position + lit.transmitted_direction * data.volume_thickness_m;
-    float radius = blur_radius(s.distance_m, lit.transmitted_perceptual_roughness);
+    // Coverage lets light through as it is, however rough the surface.
+    float roughness = hdrp_v3_max_component(lit.transmitted_weight) > 0.0
+                          ? lit.transmitted_perceptual_roughness
+                          : 0.0;
+    float radius = blur_radius(s.distance_m, roughness);
     through = vec4(vec3(1.0 - s.alpha) + lit.transmitted_weight * s.alpha, 1.0 - s.alpha);
     moved_px = vec4(bends ? place_of(source) - straight : vec2(0.0), radius * radius, 0.0);
-    most = vec4(bends ? 1.0 / s.distance_m : 0.0, lit.transmitted_perceptual_roughness, 0.0, 0.0);
+    most = vec4(bends ? 1.0 / s.distance_m : 0.0, roughness, 0.0, 0.0);
     direction = vec4(bends ? lit.transmitted_direction : vec3(0.0), bends ? 1.0 : 0.0);
 }
