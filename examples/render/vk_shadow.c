@@ -270,6 +270,26 @@ static hdrp_shadow_cascades cascades_of(const rd_vk_shadow* s, const rd_renderer
     return d;
 }
 
+/* A ball around the scene, a little larger: cascades fade at their rim. */
+static hdrp_v4 ball_of(const rd_scene* scene)
+{
+    hdrp_v3 half = hdrp_v3_scale(hdrp_v3_sub(scene->bounds.high, scene->bounds.low), 0.5f);
+    hdrp_v3 center = hdrp_v3_add(scene->bounds.low, half);
+    return hdrp_v4_from_v3(center, 1.15f * hdrp_v3_length(half));
+}
+
+/* What covers more than all that there is covers that instead. */
+static void shrink(const rd_scene* scene, const hdrp_shadow_cascades* c, hdrp_shadow_view* views)
+{
+    hdrp_v4 ball = ball_of(scene);
+    for (uint32_t i = 0; i < c->count; ++i) {
+        if (views[i].ball.w > ball.w * ball.w) {
+            views[i] =
+                hdrp_shadow_view_ball(ball, c->forward, c->caster_m, c->maps[i], c->settings);
+        }
+    }
+}
+
 bool rd_vk_shadow_aim(rd_vk_shadow* s, rd_vk_device* d, const rd_renderer* r,
                       const hdrp_light* records)
 {
@@ -280,6 +300,7 @@ bool rd_vk_shadow_aim(rd_vk_shadow* s, rd_vk_device* d, const rd_renderer* r,
             const hdrp_light* light = &records[s->light_of_view[first]];
             hdrp_shadow_cascades c = cascades_of(s, r, light, s->cascades[i]);
             ok = rd_vk_check_hdrp(d, hdrp_shadow_make_cascades(&c, s->views + first), "cascades");
+            shrink(r->scene, &c, s->views + first);
             first += s->cascades[i];
         }
     }
