@@ -710,33 +710,26 @@ HDRP_FN hdrp_v3 hdrp_i_brdf_lit_refracted(hdrp_brdf_data d, hdrp_brdf_lit_view w
                                                               w.fresnel0, w.fresnel90));
 }
 
-/** The Lit model for one light direction.
- *  d         valid  material
- *  w         valid  of the same material and features
- *  l         unit   towards the light
- *  features  any    as for hdrp_brdf_lit_view_make
- *  returns   valid  times the light's illuminance it is reflected luminance
- *  requires  hdrp_abs(hdrp_v3_dot(d.normal, w.v) - w.n_dot_v) < 1e-5f; w was made from d
- *  edges     black below the horizon, but for light through a thin slab or wall
- *  error     none: composed of the functions above
- *  source    Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
- *            Definition Render Pipeline", slides on the Lit shader
- *  note      the source scales the base under a coat by (1 - F(l_dot_h))^2 and leaves the diffuse
- *            lobe alone, which gains energy at grazing. Here the coat dims light on its way in and
- *            on its way out, each by the cosine of its own direction */
-HDRP_FN hdrp_brdf_lit hdrp_brdf_lit_eval(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdrp_v3 l,
-                                         hdrp_u32 features)
+/** What the base lobe reflects at the first bounce, cosine included. */
+HDRP_FN hdrp_v3 hdrp_i_brdf_lit_first(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdrp_v3 l, hdrp_v3 h,
+                                      hdrp_u32 features)
+{
+    float front = hdrp_saturate(hdrp_v3_dot(d.normal, l));
+    hdrp_v3 f = hdrp_i_brdf_lit_f(d, w, hdrp_v3_dot(l, h), features);
+    return hdrp_v3_scale(f, hdrp_i_brdf_lit_dv(d, w, l, h, front, features) * front);
+}
+
+/** The Lit model, from its first bounce, its diffuse lobe without cosine, and the albedo of l.
+ *  Shaders that keep little in registers call the parts one after the other. */
+HDRP_FN hdrp_brdf_lit hdrp_i_brdf_lit_rest(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdrp_v3 l,
+                                           hdrp_v3 first, hdrp_v3 diffuse, float albedo,
+                                           hdrp_u32 features)
 {
     hdrp_brdf_lit r;
     float n_dot_l = hdrp_v3_dot(d.normal, l);
     float front = hdrp_saturate(n_dot_l);
-    hdrp_v3 h = hdrp_brdf_half_vector(l, w.v, d.normal);
-    hdrp_v3 f = hdrp_i_brdf_lit_f(d, w, hdrp_v3_dot(l, h), features);
-    float dv = hdrp_i_brdf_lit_dv(d, w, l, h, front, features) * front;
-    hdrp_brdf_fgd fgd = hdrp_i_brdf_lit_fgd(d, w, l, hdrp_abs(n_dot_l), features);
-    hdrp_v3 diffuse = hdrp_v3_mul(w.diffuse, hdrp_brdf_diffuse_share(fgd, w.bounces, w.fresnel90));
-    float again = w.multiscatter * (1.0f - fgd.albedo) * front;
-    r.specular = hdrp_v3_mad(hdrp_v3_scale(f, dv), w.bounces.reflected, again);
+    float again = w.multiscatter * (1.0f - albedo) * front;
+    r.specular = hdrp_v3_mad(first, w.bounces.reflected, again);
     r.diffuse = hdrp_v3_scale(diffuse, front);
     if ((features & HDRP_BRDF_FEATURE_TRANSMISSION) != 0u) {
         hdrp_v3 through = hdrp_v3_mul(diffuse, hdrp_i_brdf_slab_transmittance(d));
@@ -754,6 +747,31 @@ HDRP_FN hdrp_brdf_lit hdrp_brdf_lit_eval(hdrp_brdf_data d, hdrp_brdf_lit_view w,
         r.specular = hdrp_v3_add(hdrp_v3_scale(r.specular, both), hdrp_v3_splat(coat));
     }
     return r;
+}
+
+/** The Lit model for one light direction.
+ *  d         valid  material
+ *  w         valid  of the same material and features
+ *  l         unit   towards the light
+ *  features  any    as for hdrp_brdf_lit_view_make
+ *  returns   valid  times the light's illuminance it is reflected luminance
+ *  requires  hdrp_abs(hdrp_v3_dot(d.normal, w.v) - w.n_dot_v) < 1e-5f; w was made from d
+ *  edges     black below the horizon, but for light through a thin slab or wall
+ *  error     none: composed of the functions above
+ *  source    Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
+ *            Definition Render Pipeline", slides on the Lit shader
+ *  note      the source scales the base under a coat by (1 - F(l_dot_h))^2 and leaves the diffuse
+ *            lobe alone, which gains energy at grazing. Here the coat dims light on its way in and
+ *            on its way out, each by the cosine of its own direction */
+HDRP_FN hdrp_brdf_lit hdrp_brdf_lit_eval(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdrp_v3 l,
+                                         hdrp_u32 features)
+{
+    float n_dot_l = hdrp_v3_dot(d.normal, l);
+    hdrp_v3 h = hdrp_brdf_half_vector(l, w.v, d.normal);
+    hdrp_v3 first = hdrp_i_brdf_lit_first(d, w, l, h, features);
+    hdrp_brdf_fgd fgd = hdrp_i_brdf_lit_fgd(d, w, l, hdrp_abs(n_dot_l), features);
+    hdrp_v3 diffuse = hdrp_v3_mul(w.diffuse, hdrp_brdf_diffuse_share(fgd, w.bounces, w.fresnel90));
+    return hdrp_i_brdf_lit_rest(d, w, l, first, diffuse, fgd.albedo, features);
 }
 
 /* What the Lit model asks of a prefiltered environment. Reflected light is the sum of

@@ -891,6 +891,22 @@ HDRP_FN hdrp_brdf_fgd_fit hdrp_brdf_fgd_fit_towards(hdrp_brdf_fgd_fit fit,
     return f;
 }
 
+/** Effective cosine between view and half vector. */
+HDRP_FN float hdrp_i_brdf_fgd_cosine(hdrp_brdf_fgd_fit fit, float c)
+{
+    float t = c * fit.inverse_alpha;
+    return c + (fit.cosine_n.x + fit.cosine_n.y * c) / (1.0f + fit.cosine_d * t);
+}
+
+/** Directional albedo for F = 1. */
+HDRP_FN float hdrp_i_brdf_fgd_albedo(hdrp_brdf_fgd_fit fit, float c)
+{
+    float t = c * fit.inverse_alpha;
+    float loss = t * (fit.loss_n.x + fit.loss_n.y * t) /
+                 hdrp_i_brdf_cubic(1.0f, fit.loss_d.x, fit.loss_d.y, fit.loss_d.z, t);
+    return 1.0f - hdrp_saturate(loss);
+}
+
 /** FGD of one direction from the fit of its roughness.
  *  fit      valid  made by hdrp_brdf_fgd_fit_make
  *  n_dot_x  [0,1]  cosine between unit normal and direction
@@ -901,12 +917,8 @@ HDRP_FN hdrp_brdf_fgd_fit hdrp_brdf_fgd_fit_towards(hdrp_brdf_fgd_fit fit,
 HDRP_FN hdrp_brdf_fgd hdrp_brdf_fgd_from_fit(hdrp_brdf_fgd_fit fit, float n_dot_x)
 {
     hdrp_brdf_fgd f;
-    float c = n_dot_x;
-    float t = c * fit.inverse_alpha;
-    float m = c + (fit.cosine_n.x + fit.cosine_n.y * c) / (1.0f + fit.cosine_d * t);
-    float loss = t * (fit.loss_n.x + fit.loss_n.y * t) /
-                 hdrp_i_brdf_cubic(1.0f, fit.loss_d.x, fit.loss_d.y, fit.loss_d.z, t);
-    f.albedo = 1.0f - hdrp_saturate(loss);
+    float m = hdrp_i_brdf_fgd_cosine(fit, n_dot_x);
+    f.albedo = hdrp_i_brdf_fgd_albedo(fit, n_dot_x);
     f.schlick = hdrp_brdf_schlick_weight(m) * f.albedo;
     return f;
 }

@@ -1889,42 +1889,12 @@ HDRP_API hdrp_result hdrp_cull_light_features(const hdrp_cull_lists* lists,
 
 /* ---- blockers -------------------------------------------------------------------------------- */
 
-/* The depth at which slice k begins; good to 1e-6. */
-static float hdrp_i_cull_slice_begin(hdrp_cull_grid grid, float scale, uint32_t k)
-{
-    float wanted = grid.series.y + (float)k / hdrp_max(scale, 1e-3f);
-    float octave = hdrp_floor(hdrp_clamp(wanted, -126.0f, 126.0f));
-    float z = hdrp_f32_from_bits((hdrp_u32)(int)(octave + 127.0f) << 23);
-    int i;
-    z += z * (wanted - octave);
-    /* The slope is that of the true logarithm, a hundredth off. */
-    for (i = 0; i < 4; ++i) {
-        z += z * 0.6931472f * (wanted - hdrp_cull_log2(z));
-    }
-    return z;
-}
-
 /* The depths of a cell, a little wider. */
 static hdrp_cull_interval hdrp_i_cull_slice_depths(const hdrp_cull_lists* lists, hdrp_v4 info,
                                                    uint32_t k)
 {
-    hdrp_cull_interval r;
-    r.nearest = lists->camera.eye_near.w;
-    r.farthest = lists->camera.right_far.w;
-    if (lists->desc.slice_count == 1u) {
-        r.nearest = info.x;
-        r.farthest = info.y;
-        return r;
-    }
-    if (k > 0u) {
-        float z = hdrp_i_cull_slice_begin(lists->grid, info.z, k);
-        r.nearest = hdrp_clamp(z - z * 1e-5f, r.nearest, r.farthest);
-    }
-    if (k + 1u < lists->desc.slice_count) {
-        float z = hdrp_i_cull_slice_begin(lists->grid, info.z, k + 1u);
-        r.farthest = hdrp_clamp(z + z * 1e-5f, r.nearest, r.farthest);
-    }
-    return r;
+    return hdrp_cull_slice_depths(lists->grid, info, k, lists->camera.eye_near.w,
+                                  lists->camera.right_far.w);
 }
 
 /* The pixels of an entry go with it. */

@@ -159,6 +159,258 @@ HDRP_FN hdrp_env_sh hdrp_env_sh_windowed(hdrp_env_sh sh, float lambda)
     return r;
 }
 
+/* >>parts of the sky
+ * What baking sums far lights by, in C and in shaders. */
+
+/* Where in a part of the sky something is: its mean direction, which is shorter than 1, and the
+ * variances and covariances around it. */
+struct hdrp_env_spread {
+    hdrp_v3 mean; /* [-1,1] */
+    float xx;     /* [0,1] */
+    float yy;     /* [0,1] */
+    float zz;     /* [0,1] */
+    float xy;     /* [-1,1] */
+    float yz;     /* [-1,1] */
+    float xz;     /* [-1,1] */
+};
+HDRP_TYPEDEF(hdrp_env_spread)
+
+/* A part of the sky: a texel of a level of the radiance cube. */
+struct hdrp_env_node {
+    hdrp_env_spread light; /* of what it emits, the channels added up */
+    hdrp_env_spread area;  /* of its area */
+    hdrp_v3 red;           /* [-2,2] mean directions of the channels, less light.mean */
+    hdrp_v3 green;         /* [-2,2] */
+    hdrp_v3 blue;          /* [-2,2] */
+};
+HDRP_TYPEDEF(hdrp_env_node)
+
+HDRP_FN hdrp_v3 hdrp_i_env_texel_centre(hdrp_u32 face, hdrp_u32 x, hdrp_u32 y, hdrp_u32 size)
+{
+    hdrp_env_place place;
+    place.face = face;
+    place.u = (hdrp_f32_from_u32(x) + 0.5f) / hdrp_f32_from_u32(size);
+    place.v = (hdrp_f32_from_u32(y) + 0.5f) / hdrp_f32_from_u32(size);
+    return hdrp_env_direction_from_cube(place);
+}
+
+HDRP_FN hdrp_env_spread hdrp_i_env_spread_splat(float s)
+{
+    hdrp_env_spread r;
+    r.mean = hdrp_v3_splat(s);
+    r.xx = s;
+    r.yy = s;
+    r.zz = s;
+    r.xy = s;
+    r.yz = s;
+    r.xz = s;
+    return r;
+}
+
+HDRP_FN hdrp_env_node hdrp_i_env_node_make(hdrp_env_spread spread)
+{
+    hdrp_env_node n;
+    n.light = spread;
+    n.area = spread;
+    n.red = hdrp_v3_splat(0.0f);
+    n.green = n.red;
+    n.blue = n.red;
+    return n;
+}
+
+/* A square of side s has the variance s^2 / 12 along both axes at right angles to its direction. */
+HDRP_FN hdrp_env_spread hdrp_i_env_square(hdrp_v3 c, float solid_angle)
+{
+    float variance = solid_angle * (1.0f / 12.0f);
+    hdrp_env_spread r;
+    r.mean = c;
+    r.xx = variance * (1.0f - c.x * c.x);
+    r.yy = variance * (1.0f - c.y * c.y);
+    r.zz = variance * (1.0f - c.z * c.z);
+    r.xy = -variance * c.x * c.y;
+    r.yz = -variance * c.y * c.z;
+    r.xz = -variance * c.x * c.z;
+    return r;
+}
+
+/* What lies under a texel of level 0, whose light is spread evenly. */
+HDRP_FN hdrp_env_node hdrp_i_env_leaf(hdrp_u32 face, hdrp_u32 x, hdrp_u32 y, hdrp_u32 size,
+                                      float solid_angle)
+{
+    float k = 2.0f / hdrp_f32_from_u32(size);
+    hdrp_v3 c = hdrp_v3_normalize(hdrp_env_point_from_cube(
+        face, (hdrp_f32_from_u32(x) + 0.5f) * k - 1.0f, (hdrp_f32_from_u32(y) + 0.5f) * k - 1.0f));
+    return hdrp_i_env_node_make(hdrp_i_env_square(c, solid_angle));
+}
+
+/* What one of four texels of a level weighs in the texel of the next that they make. */
+struct hdrp_i_env_share {
+    float area;       /* of the solid angle; the shares add up to 1 */
+    float light;      /* of the light, the channels added up; not yet divided by its sum */
+    hdrp_v3 channels; /* of the light, by channel */
+};
+HDRP_TYPEDEF(hdrp_i_env_share)
+
+/* Channels weigh alike: a blue lamp is a lamp. */
+HDRP_FN float hdrp_i_env_light_of(hdrp_v4 texel)
+{
+    return texel.x + texel.y + texel.z;
+}
+
+/* `light` is the sum over the four of area times hdrp_i_env_light_of, `radiance` their mean. */
+HDRP_FN hdrp_i_env_share hdrp_i_env_share_make(hdrp_v4 texel, float solid_angle, float light,
+                                               hdrp_v3 radiance)
+{
+    hdrp_i_env_share s;
+    float by_light;
+    s.area = texel.w / solid_angle;
+    by_light = s.area * hdrp_i_env_light_of(texel);
+    /* Where there is nothing, there is nothing to weigh. */
+    s.light = light > 0.0f ? by_light / light : s.area;
+    s.channels = hdrp_v3_make(s.area * texel.x / hdrp_max(radiance.x, HDRP_FLT_MIN),
+                              s.area * texel.y / hdrp_max(radiance.y, HDRP_FLT_MIN),
+                              s.area * texel.z / hdrp_max(radiance.z, HDRP_FLT_MIN));
+    return s;
+}
+
+/* First the means of all four are added, */
+HDRP_FN hdrp_env_node hdrp_i_env_add_means(hdrp_env_node sum, hdrp_env_node part,
+                                           hdrp_i_env_share share)
+{
+    hdrp_env_node r = sum;
+    r.light.mean = hdrp_v3_mad(sum.light.mean, part.light.mean, share.light);
+    r.area.mean = hdrp_v3_mad(sum.area.mean, part.area.mean, share.area);
+    return r;
+}
+
+HDRP_FN hdrp_env_spread hdrp_i_env_add_variance(hdrp_env_spread sum, hdrp_env_spread part,
+                                                float weight)
+{
+    hdrp_env_spread r;
+    hdrp_v3 d = hdrp_v3_sub(part.mean, sum.mean);
+    r.mean = sum.mean;
+    r.xx = sum.xx + weight * (part.xx + d.x * d.x);
+    r.yy = sum.yy + weight * (part.yy + d.y * d.y);
+    r.zz = sum.zz + weight * (part.zz + d.z * d.z);
+    r.xy = sum.xy + weight * (part.xy + d.x * d.y);
+    r.yz = sum.yz + weight * (part.yz + d.y * d.z);
+    r.xz = sum.xz + weight * (part.xz + d.x * d.z);
+    return r;
+}
+
+/* and then what is measured from them. */
+HDRP_FN hdrp_env_node hdrp_i_env_add_rest(hdrp_env_node sum, hdrp_env_node part,
+                                          hdrp_i_env_share share)
+{
+    hdrp_env_node r;
+    hdrp_v3 d = hdrp_v3_sub(part.light.mean, sum.light.mean);
+    r.light = hdrp_i_env_add_variance(sum.light, part.light, share.light);
+    r.area = hdrp_i_env_add_variance(sum.area, part.area, share.area);
+    r.red = hdrp_v3_mad(sum.red, hdrp_v3_add(part.red, d), share.channels.x);
+    r.green = hdrp_v3_mad(sum.green, hdrp_v3_add(part.green, d), share.channels.y);
+    r.blue = hdrp_v3_mad(sum.blue, hdrp_v3_add(part.blue, d), share.channels.z);
+    return r;
+}
+
+/* A lobe: the GGX kernel for N = V = R. With q the squared distance of two unit vectors it is
+ * n.l / (m q + 4 a)^2, where a is alpha squared and m is 1 - a; constants cancel. */
+struct hdrp_i_env_lobe {
+    hdrp_v3 axis;
+    float m;
+    float a4;
+    float opening2; /* square of the opening */
+    float horizon2; /* the same for parts that cross the horizon */
+};
+HDRP_TYPEDEF(hdrp_i_env_lobe)
+
+HDRP_FN hdrp_i_env_lobe hdrp_i_env_lobe_make(float alpha, float opening)
+{
+    hdrp_i_env_lobe lobe;
+    lobe.axis = hdrp_v3_splat(0.0f);
+    lobe.m = 1.0f - alpha * alpha;
+    lobe.a4 = 4.0f * alpha * alpha;
+    lobe.opening2 = opening * opening;
+    /* The wider the lobe, the more of it is at the horizon, where it has an edge. */
+    lobe.horizon2 = lobe.opening2 * hdrp_min(1.0f, 1.0f / (4.0f * lobe.a4));
+    return lobe;
+}
+
+/* Mean of the kernel over a part of the sky, and how it changes as the part moves. */
+struct hdrp_i_env_mean {
+    float value;
+    hdrp_v3 gradient;
+};
+HDRP_TYPEDEF(hdrp_i_env_mean)
+
+/* To second order in the spread: with d from the axis to the mean direction, the squared distance
+ * has the mean q + trace, where q = d.d, and the variance 4 g, where g = d^T (xx ... xz) d. */
+HDRP_FN hdrp_i_env_mean hdrp_i_env_kernel(hdrp_i_env_lobe lobe, hdrp_env_spread part)
+{
+    hdrp_i_env_mean mean;
+    hdrp_v3 d = hdrp_v3_sub(part.mean, lobe.axis);
+    float q = hdrp_v3_dot(d, d);
+    float trace = part.xx + part.yy + part.zz;
+    float g = d.x * (d.x * part.xx + 2.0f * d.y * part.xy) +
+              d.y * (d.y * part.yy + 2.0f * d.z * part.yz) +
+              d.z * (d.z * part.zz + 2.0f * d.x * part.xz);
+    float r = 1.0f / (lobe.m * q + lobe.a4);
+    float mr = lobe.m * r;
+    float cosine = 1.0f - 0.5f * (q + trace);
+    float slope = cosine > 0.0f ? 1.0f : 0.0f;
+    /* Across the horizon: the mean of max(x, 0) where x is spread evenly around the cosine. */
+    if (cosine * cosine < 3.0f * g) {
+        float half_width = hdrp_sqrt(3.0f * g);
+        slope = (cosine + half_width) / (2.0f * half_width);
+        cosine = slope * slope * half_width;
+    }
+    cosine = hdrp_max(cosine, 0.0f);
+    mean.gradient =
+        hdrp_v3_mad(hdrp_v3_scale(lobe.axis, r * r * slope), d, -4.0f * r * r * mr * cosine);
+    /* Where the lobe is narrower than a texel of the finest level, the series ends here. */
+    if (4.0f * trace * mr > 1.0f) {
+        g *= 0.25f / (trace * mr);
+        trace = 0.25f / mr;
+    }
+    mean.value =
+        r * r * (cosine * (1.0f + 2.0f * mr * (6.0f * mr * g - trace)) + slope * 4.0f * mr * g);
+    return mean;
+}
+
+/* 1 where no point of a part is above the horizon: q is the squared distance of its middle from the
+ * axis, side2 its solid angle. */
+HDRP_FN hdrp_u32 hdrp_i_env_is_hidden(float q, float side2)
+{
+    return q > 2.0f && hdrp_sq(q - 2.0f) > 16.0f * side2 ? 1u : 0u;
+}
+
+/* 1 where a part is small against its distance, and is summed as one. */
+HDRP_FN hdrp_u32 hdrp_i_env_is_far(hdrp_i_env_lobe lobe, float q, float side2)
+{
+    float largest = hdrp_sq(q - 2.0f) < 4.0f * side2 ? lobe.horizon2 : lobe.opening2;
+    return side2 * lobe.m <= lobe.opening2 * (lobe.m * q + lobe.a4) && side2 <= largest ? 1u : 0u;
+}
+
+/* What a channel of a part weighs, whose light is off the mean of the channels by an offset. */
+HDRP_FN float hdrp_i_env_weight(hdrp_i_env_mean k, hdrp_v3 offset, float solid_angle)
+{
+    return solid_angle * hdrp_max(k.value + hdrp_v3_dot(k.gradient, offset), 0.0f);
+}
+
+/* What a part adds to the light under a lobe, by channel, and in w to the lobe itself. On level 0
+ * light and area are one. */
+HDRP_FN hdrp_v4 hdrp_i_env_part_of(hdrp_i_env_lobe lobe, hdrp_env_node node, hdrp_v4 texel,
+                                   hdrp_u32 level)
+{
+    hdrp_i_env_mean k = hdrp_i_env_kernel(lobe, node.light);
+    float red = hdrp_i_env_weight(k, node.red, texel.w);
+    float green = hdrp_i_env_weight(k, node.green, texel.w);
+    float blue = hdrp_i_env_weight(k, node.blue, texel.w);
+    if (level > 0u) {
+        k = hdrp_i_env_kernel(lobe, node.area);
+    }
+    return hdrp_v4_make(red * texel.x, green * texel.y, blue * texel.z, texel.w * k.value);
+}
+
 #ifndef HDRP_GPU
 #include <stddef.h>
 
@@ -204,20 +456,6 @@ typedef struct hdrp_env_desc {
                                  over its distance from the middle of the lobe; time goes with its
                                  square; default 0.4 */
 } hdrp_env_desc;
-
-/* Where in a part of the sky something is: its mean direction, which is shorter than 1, and the
- * variances and covariances around it. */
-typedef struct hdrp_env_spread {
-    hdrp_v3 mean;
-    float xx, yy, zz, xy, yz, xz;
-} hdrp_env_spread;
-
-/* A part of the sky: a texel of a level of the radiance cube. */
-typedef struct hdrp_env_node {
-    hdrp_env_spread light;    /* of what it emits, the channels added up */
-    hdrp_env_spread area;     /* of its area */
-    hdrp_v3 red, green, blue; /* mean directions of the channels, less light.mean */
-} hdrp_env_node;
 
 /* A baked environment. The members are for reading; init sets the pointers. */
 typedef struct hdrp_env {
@@ -809,85 +1047,38 @@ HDRP_API hdrp_result hdrp_env_resample(hdrp_env* env, const hdrp_env_image* imag
 
 /* ---- mip levels and nodes -------------------------------------------------------------------- */
 
-/* What lies under a texel of a level of the radiance cube; on level 0, which stores none, made in a
- * place of the caller. */
-static const hdrp_env_node* hdrp_i_env_node_at(const hdrp_env* env, uint32_t level, size_t index,
-                                               hdrp_env_node* place)
+/* What lies under a texel of a level of the radiance cube; level 0 stores none. */
+static hdrp_env_node hdrp_i_env_node_at(const hdrp_env* env, uint32_t level, size_t index)
 {
     uint32_t n = env->radiance.size;
-    float k = 2.0f / (float)n;
-    float variance;
-    hdrp_v3 c;
     if (level > 0u) {
-        return env->nodes + (index - (size_t)6u * n * n);
+        return env->nodes[index - (size_t)6u * n * n];
     }
-    c = hdrp_v3_normalize(hdrp_env_point_from_cube((hdrp_u32)(index / n / n),
-                                                   ((float)(index % n) + 0.5f) * k - 1.0f,
-                                                   ((float)(index / n % n) + 0.5f) * k - 1.0f));
-    /* A square of side s has the variance s^2 / 12 along both axes at right angles to c. */
-    variance = env->radiance.texels[index].w * (1.0f / 12.0f);
-    place->light.mean = c;
-    place->light.xx = variance * (1.0f - c.x * c.x);
-    place->light.yy = variance * (1.0f - c.y * c.y);
-    place->light.zz = variance * (1.0f - c.z * c.z);
-    place->light.xy = -variance * c.x * c.y;
-    place->light.yz = -variance * c.y * c.z;
-    place->light.xz = -variance * c.x * c.z;
-    place->area = place->light;
-    place->red = place->green = place->blue = hdrp_v3_splat(0.0f);
-    return place;
-}
-
-/* Adds a weighted part to a mean, or to the variance around a mean that is complete. */
-static void hdrp_i_env_add_mean(hdrp_env_spread* sum, const hdrp_env_spread* part, float weight)
-{
-    sum->mean = hdrp_v3_mad(sum->mean, part->mean, weight);
-}
-
-static void hdrp_i_env_add_variance(hdrp_env_spread* sum, const hdrp_env_spread* part, float weight)
-{
-    hdrp_v3 d = hdrp_v3_sub(part->mean, sum->mean);
-    sum->xx += weight * (part->xx + d.x * d.x);
-    sum->yy += weight * (part->yy + d.y * d.y);
-    sum->zz += weight * (part->zz + d.z * d.z);
-    sum->xy += weight * (part->xy + d.x * d.y);
-    sum->yz += weight * (part->yz + d.y * d.z);
-    sum->xz += weight * (part->xz + d.x * d.z);
+    return hdrp_i_env_leaf((hdrp_u32)(index / n / n), (hdrp_u32)(index % n),
+                           (hdrp_u32)(index / n % n), n, env->radiance.texels[index].w);
 }
 
 /* Joins four texels of a level into one of the next. */
 static void hdrp_i_env_join(const hdrp_env_node child[4], const hdrp_v4 texel[4],
                             hdrp_env_node* node, hdrp_v4* sum)
 {
-    float by_light[4], by_area[4];
+    hdrp_i_env_share share[4];
     float total = 0.0f;
     hdrp_v3 radiance = hdrp_v3_splat(0.0f);
     int i;
     float solid_angle = texel[0].w + texel[1].w + texel[2].w + texel[3].w;
     for (i = 0; i < 4; ++i) {
-        by_area[i] = texel[i].w / solid_angle;
-        radiance = hdrp_v3_mad(radiance, hdrp_v3_from_v4(texel[i]), by_area[i]);
-        /* Channels weigh alike: a blue lamp is a lamp. */
-        by_light[i] = by_area[i] * (texel[i].x + texel[i].y + texel[i].z);
-        total += by_light[i];
+        float by_area = texel[i].w / solid_angle;
+        radiance = hdrp_v3_mad(radiance, hdrp_v3_from_v4(texel[i]), by_area);
+        total += by_area * hdrp_i_env_light_of(texel[i]);
     }
-    memset(node, 0, sizeof *node);
+    *node = hdrp_i_env_node_make(hdrp_i_env_spread_splat(0.0f));
     for (i = 0; i < 4; ++i) {
-        by_light[i] = total > 0.0f ? by_light[i] / total : by_area[i];
-        hdrp_i_env_add_mean(&node->light, &child[i].light, by_light[i]);
-        hdrp_i_env_add_mean(&node->area, &child[i].area, by_area[i]);
+        share[i] = hdrp_i_env_share_make(texel[i], solid_angle, total, radiance);
+        *node = hdrp_i_env_add_means(*node, child[i], share[i]);
     }
     for (i = 0; i < 4; ++i) {
-        hdrp_v3 d = hdrp_v3_sub(child[i].light.mean, node->light.mean);
-        /* Where there is nothing, there is nothing to weigh. */
-        float x = by_area[i] * texel[i].x / hdrp_max(radiance.x, HDRP_FLT_MIN);
-        float y = by_area[i] * texel[i].y / hdrp_max(radiance.y, HDRP_FLT_MIN);
-        float z = by_area[i] * texel[i].z / hdrp_max(radiance.z, HDRP_FLT_MIN);
-        hdrp_i_env_add_variance(&node->light, &child[i].light, by_light[i]);
-        hdrp_i_env_add_variance(&node->area, &child[i].area, by_area[i]);
-        node->red = hdrp_v3_mad(node->red, hdrp_v3_add(child[i].red, d), x);
-        node->green = hdrp_v3_mad(node->green, hdrp_v3_add(child[i].green, d), y);
-        node->blue = hdrp_v3_mad(node->blue, hdrp_v3_add(child[i].blue, d), z);
+        *node = hdrp_i_env_add_rest(*node, child[i], share[i]);
     }
     *sum = hdrp_v4_from_v3(radiance, solid_angle);
 }
@@ -910,13 +1101,13 @@ HDRP_API hdrp_result hdrp_env_reduce(hdrp_env* env, uint32_t first_face, uint32_
             for (y = 0u; y < n; ++y) {
                 for (x = 0u; x < n; ++x) {
                     size_t index = to + ((size_t)face * n + y) * n + x;
-                    hdrp_env_node child[4], place;
+                    hdrp_env_node child[4];
                     hdrp_v4 texel[4];
                     uint32_t i;
                     for (i = 0u; i < 4u; ++i) {
                         uint32_t cx = 2u * x + i % 2u, cy = 2u * y + i / 2u;
                         size_t at = from + ((size_t)face * 2u * n + cy) * 2u * n + cx;
-                        child[i] = *hdrp_i_env_node_at(env, level - 1u, at, &place);
+                        child[i] = hdrp_i_env_node_at(env, level - 1u, at);
                         texel[i] = env->radiance.texels[at];
                     }
                     hdrp_i_env_join(child, texel, env->nodes + (index - finest),
@@ -932,124 +1123,50 @@ HDRP_API hdrp_result hdrp_env_reduce(hdrp_env* env, uint32_t first_face, uint32_
 
 #define HDRP_I_ENV_LEVELS_MAX 13 /* of a cube of 4096 */
 
-/* A lobe: the GGX kernel for N = V = R. With q the squared distance of two unit vectors it is
- * n.l / (m q + 4 a)^2, where a is alpha squared and m is 1 - a; constants cancel. */
-typedef struct hdrp_i_env_lobe {
-    const hdrp_env* env;
-    hdrp_v3 axis;
-    float m, a4;
-    float opening2;                       /* square of env->opening */
-    float horizon2;                       /* the same for parts that cross the horizon */
-    size_t offset[HDRP_I_ENV_LEVELS_MAX]; /* of the levels of the radiance cube */
-} hdrp_i_env_lobe;
-
-static hdrp_i_env_lobe hdrp_i_env_lobe_make(const hdrp_env* env, float alpha)
-{
-    hdrp_i_env_lobe lobe;
-    uint32_t level;
-    lobe.env = env;
-    lobe.axis = hdrp_v3_splat(0.0f);
-    lobe.m = 1.0f - alpha * alpha;
-    lobe.a4 = 4.0f * alpha * alpha;
-    lobe.opening2 = env->opening * env->opening;
-    /* The wider the lobe, the more of it is at the horizon, where it has an edge. */
-    lobe.horizon2 = lobe.opening2 * hdrp_min(1.0f, 1.0f / (4.0f * lobe.a4));
-    for (level = 0u; level < env->radiance.level_count; ++level) {
-        lobe.offset[level] = hdrp_i_env_level_offset(env->radiance.size, level);
-    }
-    return lobe;
-}
-
-/* Mean of the kernel over a part of the sky, and how it changes as the part moves. */
-typedef struct hdrp_i_env_mean {
-    float value;
-    hdrp_v3 gradient;
-} hdrp_i_env_mean;
-
-/* To second order in the spread: with d from the axis to the mean direction, the squared distance
- * has the mean q + trace, where q = d.d, and the variance 4 g, where g = d^T (xx ... xz) d. */
-static hdrp_i_env_mean hdrp_i_env_kernel(const hdrp_i_env_lobe* lobe, const hdrp_env_spread* part)
-{
-    hdrp_i_env_mean mean;
-    hdrp_v3 d = hdrp_v3_sub(part->mean, lobe->axis);
-    float q = hdrp_v3_dot(d, d);
-    float trace = part->xx + part->yy + part->zz;
-    float g = d.x * (d.x * part->xx + 2.0f * d.y * part->xy) +
-              d.y * (d.y * part->yy + 2.0f * d.z * part->yz) +
-              d.z * (d.z * part->zz + 2.0f * d.x * part->xz);
-    float r = 1.0f / (lobe->m * q + lobe->a4);
-    float mr = lobe->m * r;
-    float cosine = 1.0f - 0.5f * (q + trace);
-    float slope = cosine > 0.0f ? 1.0f : 0.0f;
-    /* Across the horizon: the mean of max(x, 0) where x is spread evenly around the cosine. */
-    if (cosine * cosine < 3.0f * g) {
-        float half_width = hdrp_sqrt(3.0f * g);
-        slope = (cosine + half_width) / (2.0f * half_width);
-        cosine = slope * slope * half_width;
-    }
-    cosine = hdrp_max(cosine, 0.0f);
-    mean.gradient =
-        hdrp_v3_mad(hdrp_v3_scale(lobe->axis, r * r * slope), d, -4.0f * r * r * mr * cosine);
-    /* Where the lobe is narrower than a texel of the finest level, the series ends here. */
-    if (4.0f * trace * mr > 1.0f) {
-        g *= 0.25f / (trace * mr);
-        trace = 0.25f / mr;
-    }
-    mean.value =
-        r * r * (cosine * (1.0f + 2.0f * mr * (6.0f * mr * g - trace)) + slope * 4.0f * mr * g);
-    return mean;
-}
-
 /* Mean radiance under a lobe. Walks the mip levels as a tree: what is small against its distance
  * counts as one, everything else is opened. */
-static hdrp_v3 hdrp_i_env_gather(const hdrp_i_env_lobe* lobe)
+static hdrp_v3 hdrp_i_env_gather(const hdrp_env* env, const hdrp_i_env_lobe* lobe)
 {
     struct {
         uint16_t x, y;
         uint8_t face, level;
     } stack[6 + 3 * HDRP_I_ENV_LEVELS_MAX], at;
+    size_t offset[HDRP_I_ENV_LEVELS_MAX];
     double red = 0.0, green = 0.0, blue = 0.0, total = 0.0;
     int depth = 0;
     uint32_t i;
+    for (i = 0u; i < env->radiance.level_count; ++i) {
+        offset[i] = hdrp_i_env_level_offset(env->radiance.size, i);
+    }
     for (i = 0u; i < 6u; ++i) {
         stack[depth].x = stack[depth].y = 0u;
         stack[depth].face = (uint8_t)i;
-        stack[depth].level = (uint8_t)(lobe->env->radiance.level_count - 1u);
+        stack[depth].level = (uint8_t)(env->radiance.level_count - 1u);
         ++depth;
     }
     while (depth > 0) {
-        hdrp_env_node place;
-        const hdrp_env_node* node;
+        hdrp_env_node node;
         hdrp_v4 texel;
         hdrp_v3 d;
-        float q, side2;
+        float q;
         uint32_t n;
         size_t index;
         at = stack[--depth];
-        n = lobe->env->radiance.size >> at.level;
-        index = lobe->offset[at.level] + ((size_t)at.face * n + at.y) * n + at.x;
-        texel = lobe->env->radiance.texels[index];
-        node = hdrp_i_env_node_at(lobe->env, at.level, index, &place);
-        d = hdrp_v3_sub(node->area.mean, lobe->axis);
+        n = env->radiance.size >> at.level;
+        index = offset[at.level] + ((size_t)at.face * n + at.y) * n + at.x;
+        texel = env->radiance.texels[index];
+        node = hdrp_i_env_node_at(env, at.level, index);
+        d = hdrp_v3_sub(node.area.mean, lobe->axis);
         q = hdrp_v3_dot(d, d);
-        side2 = texel.w;
-        if (q > 2.0f && hdrp_sq(q - 2.0f) > 16.0f * side2) {
-            continue; /* no point of it is above the horizon */
+        if (hdrp_i_env_is_hidden(q, texel.w)) {
+            continue;
         }
-        if (at.level == 0u ||
-            (side2 * lobe->m <= lobe->opening2 * (lobe->m * q + lobe->a4) &&
-             side2 <= (hdrp_sq(q - 2.0f) < 4.0f * side2 ? lobe->horizon2 : lobe->opening2))) {
-            hdrp_i_env_mean k = hdrp_i_env_kernel(lobe, &node->light);
-            float weight = texel.w * hdrp_max(k.value + hdrp_v3_dot(k.gradient, node->red), 0.0f);
-            red += (double)(weight * texel.x);
-            weight = texel.w * hdrp_max(k.value + hdrp_v3_dot(k.gradient, node->green), 0.0f);
-            green += (double)(weight * texel.y);
-            weight = texel.w * hdrp_max(k.value + hdrp_v3_dot(k.gradient, node->blue), 0.0f);
-            blue += (double)(weight * texel.z);
-            if (at.level > 0u) {
-                k = hdrp_i_env_kernel(lobe, &node->area);
-            }
-            total += (double)(texel.w * k.value);
+        if (at.level == 0u || hdrp_i_env_is_far(*lobe, q, texel.w)) {
+            hdrp_v4 part = hdrp_i_env_part_of(*lobe, node, texel, at.level);
+            red += (double)part.x;
+            green += (double)part.y;
+            blue += (double)part.z;
+            total += (double)part.w;
             continue;
         }
         for (i = 0u; i < 4u; ++i) {
@@ -1070,15 +1187,6 @@ HDRP_API uint32_t hdrp_env_specular_rows(const hdrp_env* env)
         rows += 6u * (env->specular.size >> level);
     }
     return rows;
-}
-
-static hdrp_v3 hdrp_i_env_texel_centre(uint32_t face, uint32_t x, uint32_t y, uint32_t size)
-{
-    hdrp_env_place place;
-    place.face = face;
-    place.u = ((float)x + 0.5f) / (float)size;
-    place.v = ((float)y + 0.5f) / (float)size;
-    return hdrp_env_direction_from_cube(place);
 }
 
 HDRP_API hdrp_result hdrp_env_prefilter(hdrp_env* env, uint32_t first_row, uint32_t row_count)
@@ -1102,9 +1210,9 @@ HDRP_API hdrp_result hdrp_env_prefilter(hdrp_env* env, uint32_t first_row, uint3
             env->radiance.texels +
             hdrp_i_env_level_offset(env->radiance.size, env->radiance.level_count -
                                                             hdrp_i_env_levels(env->specular.size));
-        hdrp_i_env_lobe lobe =
-            hdrp_i_env_lobe_make(env, hdrp_sq(hdrp_env_perceptual_roughness_from_lod(
-                                          (float)level, env->specular.level_count)));
+        hdrp_i_env_lobe lobe = hdrp_i_env_lobe_make(hdrp_sq(hdrp_env_perceptual_roughness_from_lod(
+                                                        (float)level, env->specular.level_count)),
+                                                    env->opening);
         for (; row < last; ++row) {
             uint32_t x;
             for (x = 0u; x < n; ++x) {
@@ -1114,7 +1222,7 @@ HDRP_API hdrp_result hdrp_env_prefilter(hdrp_env* env, uint32_t first_row, uint3
                     continue;
                 }
                 lobe.axis = hdrp_i_env_texel_centre((row - begin) / n, x, (row - begin) % n, n);
-                texels[index] = hdrp_v4_from_v3(hdrp_i_env_gather(&lobe),
+                texels[index] = hdrp_v4_from_v3(hdrp_i_env_gather(env, &lobe),
                                                 hdrp_env_cube_solid_angle(x, (row - begin) % n, n));
             }
         }
@@ -1135,12 +1243,12 @@ HDRP_API hdrp_result hdrp_env_convolve_irradiance(hdrp_env* env, uint32_t first_
     if (first_row > 6u * n || row_count > 6u * n - first_row) {
         return HDRP_ERROR_BAD_ARGUMENT;
     }
-    lobe = hdrp_i_env_lobe_make(env, 1.0f);
+    lobe = hdrp_i_env_lobe_make(1.0f, env->opening);
     for (row = first_row; row < first_row + row_count; ++row) {
         for (x = 0u; x < n; ++x) {
             lobe.axis = hdrp_i_env_texel_centre(row / n, x, row % n, n);
             env->irradiance.texels[(size_t)row * n + x] =
-                hdrp_v4_from_v3(hdrp_v3_scale(hdrp_i_env_gather(&lobe), HDRP_PI),
+                hdrp_v4_from_v3(hdrp_v3_scale(hdrp_i_env_gather(env, &lobe), HDRP_PI),
                                 hdrp_env_cube_solid_angle(x, row % n, n));
         }
     }
@@ -1208,14 +1316,13 @@ HDRP_API hdrp_result hdrp_env_project_sh(const hdrp_env* env, hdrp_env_sh* sh)
             for (x = 0u; x < n; ++x) {
                 size_t index = offset + ((size_t)face * n + y) * n + x;
                 hdrp_v4 texel = env->radiance.texels[index];
-                hdrp_env_node place;
-                const hdrp_env_node* node = hdrp_i_env_node_at(env, level, index, &place);
+                hdrp_env_node node = hdrp_i_env_node_at(env, level, index);
                 total += (double)texel.w;
-                hdrp_i_env_add_sh(sum[0], hdrp_v3_add(node->light.mean, node->red),
+                hdrp_i_env_add_sh(sum[0], hdrp_v3_add(node.light.mean, node.red),
                                   (double)texel.w * (double)texel.x);
-                hdrp_i_env_add_sh(sum[1], hdrp_v3_add(node->light.mean, node->green),
+                hdrp_i_env_add_sh(sum[1], hdrp_v3_add(node.light.mean, node.green),
                                   (double)texel.w * (double)texel.y);
-                hdrp_i_env_add_sh(sum[2], hdrp_v3_add(node->light.mean, node->blue),
+                hdrp_i_env_add_sh(sum[2], hdrp_v3_add(node.light.mean, node.blue),
                                   (double)texel.w * (double)texel.z);
             }
         }

@@ -7,7 +7,7 @@
  * hdrp_i_gpu_vk_order the barriers in front of it and behind.
  *
  * >>index of the functions, without hdrp_gpu_vk_ (written by tools/api_check.py --write)
- *   resources: buffer_create buffer_destroy image_create image_destroy
+ *   resources: buffer_create buffer_destroy image_create image_destroy cube_create cube_destroy
  * >>end */
 #ifndef HDRP_GPU_VK_CORE_H
 #define HDRP_GPU_VK_CORE_H
@@ -27,12 +27,15 @@ extern "C" {
 #endif
 
 /* Passes, or-ed. What is not asked for is not created, and needs nothing of the device. */
-#define HDRP_GPU_VK_PASS_FGD    1u
-#define HDRP_GPU_VK_PASS_DEPTH  2u
-#define HDRP_GPU_VK_PASS_LISTS  4u /* with depth */
-#define HDRP_GPU_VK_PASS_LIGHT  32u
-#define HDRP_GPU_VK_PASS_SHADOW 64u
-#define HDRP_GPU_VK_PASS_ALL    103u
+#define HDRP_GPU_VK_PASS_FGD         1u
+#define HDRP_GPU_VK_PASS_DEPTH       2u
+#define HDRP_GPU_VK_PASS_LISTS       4u /* with depth */
+#define HDRP_GPU_VK_PASS_BLOCKERS    8u
+#define HDRP_GPU_VK_PASS_LIGHT       32u
+#define HDRP_GPU_VK_PASS_SHADOW      64u
+#define HDRP_GPU_VK_PASS_ENVIRONMENT 128u
+#define HDRP_GPU_VK_PASS_TONE_MAP    256u
+#define HDRP_GPU_VK_PASS_ALL         495u
 
 /* Room for the compute shaders of all passes. */
 #define HDRP_GPU_VK_SHADERS_MAX 32u
@@ -118,6 +121,7 @@ typedef struct hdrp_gpu_vk_desc {
     X(GetPhysicalDeviceFormatProperties)                                                           \
     X(GetPhysicalDeviceMemoryProperties)                                                           \
     X(GetPhysicalDeviceProperties)                                                                 \
+    X(GetPhysicalDeviceProperties2)                                                                \
     X(GetPhysicalDeviceQueueFamilyProperties)
 
 #define HDRP_GPU_VK_MEMBER(name) PFN_vk##name name;
@@ -142,7 +146,9 @@ typedef struct hdrp_gpu_vk {
     VkPhysicalDeviceMemoryProperties memory_types;
     VkDeviceSize buffer_range_max, buffer_alignment; /* limits of storage buffers */
     VkPipelineStageFlags shader_stages;              /* compute and, where there are, fragment */
-    VkSampler linear; /* linear within a level and between levels, clamped to the edge */
+    uint32_t group;                                  /* threads of the groups that build lists */
+    uint32_t one_subgroup; /* 1 where they run in step, and need no barriers */
+    VkSampler linear;      /* linear within a level and between levels, clamped to the edge */
     hdrp_gpu_vk_pipeline pipelines[HDRP_GPU_VK_SHADERS_MAX]; /* by hdrp_i_gpu_vk_shader.index */
     VkDescriptorPool pools[HDRP_GPU_VK_FRAMES_MAX];
     uint32_t frame, passes_recorded; /* the frame that is recorded, and sets taken in it */
@@ -165,6 +171,19 @@ typedef struct hdrp_gpu_vk_image {
     uint32_t width_px, height_px;
     hdrp_gpu_vk_block block;
 } hdrp_gpu_vk_image;
+
+/* Levels of a cube of 4096 texels. */
+#define HDRP_GPU_VK_CUBE_LEVELS_MAX 13u
+
+/* A cube with mip levels, faces in the order +X -X +Y -Y +Z -Z. */
+typedef struct hdrp_gpu_vk_cube {
+    VkImage image;
+    VkImageView view; /* VK_IMAGE_VIEW_TYPE_CUBE, all levels: for samplers */
+    VkImageView levels[HDRP_GPU_VK_CUBE_LEVELS_MAX]; /* 2D_ARRAY of six layers: to write to */
+    VkFormat format;
+    uint32_t size_px, level_count; /* level k has size_px >> k */
+    hdrp_gpu_vk_block block;
+} hdrp_gpu_vk_cube;
 
 /** A buffer with memory.
  *  gpu         from hdrp_gpu_vk_init
@@ -211,6 +230,28 @@ HDRP_API hdrp_result hdrp_gpu_vk_image_create(const hdrp_gpu_vk* gpu, VkFormat f
  *  edges  what uses it must have been executed */
 HDRP_API void hdrp_gpu_vk_image_destroy(const hdrp_gpu_vk* gpu, hdrp_gpu_vk_image* image);
 
+/** A cube with mip levels in the memory of the device, a view of all of it and one of each level.
+ *  gpu          from hdrp_gpu_vk_init
+ *  format       with optimal tiling for the usage
+ *  size_px      [1,4096]  a power of two
+ *  level_count  [1,13]  levels, down to 1 by 1 texel at most
+ *  usage        VK_IMAGE_USAGE_...
+ *  name         for debuggers; NULL: none
+ *  cube         result, in VK_IMAGE_LAYOUT_UNDEFINED; to be destroyed by hdrp_gpu_vk_cube_destroy
+ *  returns      HDRP_OK, or an error, with cube untouched and nothing left on the device
+ *  errors       as hdrp_gpu_vk_image_create
+ *  memory       from desc.memory */
+HDRP_API hdrp_result hdrp_gpu_vk_cube_create(const hdrp_gpu_vk* gpu, VkFormat format,
+                                             uint32_t size_px, uint32_t level_count,
+                                             VkImageUsageFlags usage, const char* name,
+                                             hdrp_gpu_vk_cube* cube);
+
+/** Destroys a cube.
+ *  gpu    that made it
+ *  cube   NULL and a cube of zeros are allowed; it is all zeros afterwards
+ *  edges  what uses it must have been executed */
+HDRP_API void hdrp_gpu_vk_cube_destroy(const hdrp_gpu_vk* gpu, hdrp_gpu_vk_cube* cube);
+
 #ifdef __cplusplus
 }
 #endif
@@ -233,19 +274,27 @@ extern "C" {
 /* ---- what a pass is made of ------------------------------------------------------------------ */
 
 #define HDRP_I_GPU_VK_BINDINGS_MAX 24u
+#define HDRP_I_GPU_VK_GROUP_MAX    64u /* threads, of shaders/group.glsl */
 
 /* Places in hdrp_gpu_vk.pipelines. */
-#define HDRP_I_GPU_VK_FGD           0u
-#define HDRP_I_GPU_VK_DEPTH         1u
-#define HDRP_I_GPU_VK_CULL_PROJECT  2u
-#define HDRP_I_GPU_VK_CULL_COARSE   3u
-#define HDRP_I_GPU_VK_CULL_TILES    4u
-#define HDRP_I_GPU_VK_CULL_PIXELS   5u
-#define HDRP_I_GPU_VK_CULL_CLUSTERS 6u
-#define HDRP_I_GPU_VK_CLASSIFY      16u
-#define HDRP_I_GPU_VK_DISPATCH      17u
-#define HDRP_I_GPU_VK_DEFERRED      18u
-#define HDRP_I_GPU_VK_SHADOW        28u
+#define HDRP_I_GPU_VK_FGD              0u
+#define HDRP_I_GPU_VK_DEPTH            1u
+#define HDRP_I_GPU_VK_CULL_PROJECT     2u
+#define HDRP_I_GPU_VK_CULL_COARSE      3u
+#define HDRP_I_GPU_VK_CULL_TILES       4u
+#define HDRP_I_GPU_VK_CULL_PIXELS      5u
+#define HDRP_I_GPU_VK_CULL_CLUSTERS    6u
+#define HDRP_I_GPU_VK_CULL_BLOCKERS    7u
+#define HDRP_I_GPU_VK_CLASSIFY         16u
+#define HDRP_I_GPU_VK_DISPATCH         17u
+#define HDRP_I_GPU_VK_DEFERRED         18u
+#define HDRP_I_GPU_VK_SHADOW           28u
+#define HDRP_I_GPU_VK_ENV_FROM_LATLONG 20u
+#define HDRP_I_GPU_VK_ENV_FROM_CUBE    21u
+#define HDRP_I_GPU_VK_ENV_REDUCE       22u
+#define HDRP_I_GPU_VK_ENV_FILTER       23u
+#define HDRP_I_GPU_VK_ENV_HARMONICS    24u
+#define HDRP_I_GPU_VK_TONE_MAP         25u
 
 /* A compute shader. Each letter of `bindings` is the type of one, in order from 0 on: s storage
  * image, t sampled image, c sampled image with a sampler, b storage buffer, u uniform buffer. */
@@ -515,34 +564,65 @@ HDRP_I_GPU_VK_FN int hdrp_i_gpu_vk_has_format(const hdrp_gpu_vk* gpu, VkFormat f
     return (properties.optimalTilingFeatures & needs) == needs;
 }
 
-/* Of an image that exists, the memory and the view. */
-HDRP_I_GPU_VK_FN hdrp_result hdrp_i_gpu_vk_image_fill(const hdrp_gpu_vk* gpu,
-                                                      hdrp_gpu_vk_image* image)
+/* The memory of an image. */
+HDRP_I_GPU_VK_FN hdrp_result hdrp_i_gpu_vk_image_bind(const hdrp_gpu_vk* gpu, VkImage image,
+                                                      hdrp_gpu_vk_block* block)
 {
     VkMemoryRequirements needs;
-    VkImageViewCreateInfo view;
     hdrp_result r;
-    gpu->vk.GetImageMemoryRequirements(gpu->desc.device, image->image, &needs);
-    r = hdrp_i_gpu_vk_allocate(gpu, &needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, &image->block);
+    gpu->vk.GetImageMemoryRequirements(gpu->desc.device, image, &needs);
+    r = hdrp_i_gpu_vk_allocate(gpu, &needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, block);
     if (r != HDRP_OK) {
-        memset(&image->block, 0, sizeof image->block);
+        memset(block, 0, sizeof *block);
         return r;
     }
-    r = hdrp_i_gpu_vk_result(gpu->vk.BindImageMemory(gpu->desc.device, image->image,
-                                                     image->block.memory, image->block.offset));
-    if (r != HDRP_OK) {
-        return r;
-    }
+    return hdrp_i_gpu_vk_result(
+        gpu->vk.BindImageMemory(gpu->desc.device, image, block->memory, block->offset));
+}
+
+/* A view of some levels and layers. */
+HDRP_I_GPU_VK_FN hdrp_result hdrp_i_gpu_vk_image_view(const hdrp_gpu_vk* gpu, VkImage image,
+                                                      VkFormat format, VkImageViewType type,
+                                                      uint32_t first_level, uint32_t level_count,
+                                                      uint32_t layer_count, VkImageView* made)
+{
+    VkImageViewCreateInfo view;
     memset(&view, 0, sizeof view);
     view.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
-    view.image = image->image;
-    view.viewType = VK_IMAGE_VIEW_TYPE_2D;
-    view.format = image->format;
+    view.image = image;
+    view.viewType = type;
+    view.format = format;
     view.subresourceRange.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT;
-    view.subresourceRange.levelCount = 1u;
-    view.subresourceRange.layerCount = 1u;
+    view.subresourceRange.baseMipLevel = first_level;
+    view.subresourceRange.levelCount = level_count;
+    view.subresourceRange.layerCount = layer_count;
     return hdrp_i_gpu_vk_result(
-        gpu->vk.CreateImageView(gpu->desc.device, &view, gpu->desc.allocation, &image->view));
+        gpu->vk.CreateImageView(gpu->desc.device, &view, gpu->desc.allocation, made));
+}
+
+/* An image of two dimensions or, with six layers, a cube. */
+HDRP_I_GPU_VK_FN hdrp_result hdrp_i_gpu_vk_image_make(const hdrp_gpu_vk* gpu, VkFormat format,
+                                                      uint32_t width_px, uint32_t height_px,
+                                                      uint32_t level_count, uint32_t layer_count,
+                                                      VkImageUsageFlags usage, VkImage* image)
+{
+    VkImageCreateInfo info;
+    memset(&info, 0, sizeof info);
+    info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
+    info.flags = layer_count == 6u ? (VkImageCreateFlags)VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT : 0u;
+    info.imageType = VK_IMAGE_TYPE_2D;
+    info.format = format;
+    info.extent.width = width_px;
+    info.extent.height = height_px;
+    info.extent.depth = 1u;
+    info.mipLevels = level_count;
+    info.arrayLayers = layer_count;
+    info.samples = VK_SAMPLE_COUNT_1_BIT;
+    info.tiling = VK_IMAGE_TILING_OPTIMAL;
+    info.usage = usage;
+    info.initialLayout = VK_IMAGE_LAYOUT_UNDEFINED;
+    return hdrp_i_gpu_vk_result(
+        gpu->vk.CreateImage(gpu->desc.device, &info, gpu->desc.allocation, image));
 }
 
 HDRP_API hdrp_result hdrp_gpu_vk_image_create(const hdrp_gpu_vk* gpu, VkFormat format,
@@ -550,7 +630,6 @@ HDRP_API hdrp_result hdrp_gpu_vk_image_create(const hdrp_gpu_vk* gpu, VkFormat f
                                               VkImageUsageFlags usage, const char* name,
                                               hdrp_gpu_vk_image* image)
 {
-    VkImageCreateInfo info;
     hdrp_gpu_vk_image made;
     hdrp_result r;
     if (!gpu || !image) {
@@ -566,23 +645,11 @@ HDRP_API hdrp_result hdrp_gpu_vk_image_create(const hdrp_gpu_vk* gpu, VkFormat f
     made.format = format;
     made.width_px = width_px;
     made.height_px = height_px;
-    memset(&info, 0, sizeof info);
-    info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
-    info.imageType = VK_IMAGE_TYPE_2D;
-    info.format = format;
-    info.extent.width = width_px;
-    info.extent.height = height_px;
-    info.extent.depth = 1u;
-    info.mipLevels = 1u;
-    info.arrayLayers = 1u;
-    info.samples = VK_SAMPLE_COUNT_1_BIT;
-    info.tiling = VK_IMAGE_TILING_OPTIMAL;
-    info.usage = usage;
-    info.initialLayout = VK_IMAGE_LAYOUT_UNDEFINED;
-    r = hdrp_i_gpu_vk_result(
-        gpu->vk.CreateImage(gpu->desc.device, &info, gpu->desc.allocation, &made.image));
+    r = hdrp_i_gpu_vk_image_make(gpu, format, width_px, height_px, 1u, 1u, usage, &made.image);
+    r = r == HDRP_OK ? hdrp_i_gpu_vk_image_bind(gpu, made.image, &made.block) : r;
     if (r == HDRP_OK) {
-        r = hdrp_i_gpu_vk_image_fill(gpu, &made);
+        r = hdrp_i_gpu_vk_image_view(gpu, made.image, format, VK_IMAGE_VIEW_TYPE_2D, 0u, 1u, 1u,
+                                     &made.view);
     }
     if (r != HDRP_OK) {
         hdrp_gpu_vk_image_destroy(gpu, &made);
@@ -604,6 +671,64 @@ HDRP_API void hdrp_gpu_vk_image_destroy(const hdrp_gpu_vk* gpu, hdrp_gpu_vk_imag
     memset(image, 0, sizeof *image);
 }
 
+HDRP_API hdrp_result hdrp_gpu_vk_cube_create(const hdrp_gpu_vk* gpu, VkFormat format,
+                                             uint32_t size_px, uint32_t level_count,
+                                             VkImageUsageFlags usage, const char* name,
+                                             hdrp_gpu_vk_cube* cube)
+{
+    hdrp_gpu_vk_cube made;
+    hdrp_result r;
+    uint32_t i;
+    if (!gpu || !cube) {
+        return HDRP_ERROR_NULL_POINTER;
+    }
+    if (size_px - 1u >= 4096u || (size_px & (size_px - 1u)) != 0u || level_count == 0u ||
+        level_count > HDRP_GPU_VK_CUBE_LEVELS_MAX || (size_px >> (level_count - 1u)) == 0u ||
+        usage == 0u) {
+        return HDRP_ERROR_BAD_ARGUMENT;
+    }
+    if (!hdrp_i_gpu_vk_has_format(gpu, format, usage)) {
+        return HDRP_ERROR_UNSUPPORTED;
+    }
+    memset(&made, 0, sizeof made);
+    made.format = format;
+    made.size_px = size_px;
+    made.level_count = level_count;
+    r = hdrp_i_gpu_vk_image_make(gpu, format, size_px, size_px, level_count, 6u, usage,
+                                 &made.image);
+    r = r == HDRP_OK ? hdrp_i_gpu_vk_image_bind(gpu, made.image, &made.block) : r;
+    if (r == HDRP_OK) {
+        r = hdrp_i_gpu_vk_image_view(gpu, made.image, format, VK_IMAGE_VIEW_TYPE_CUBE, 0u,
+                                     level_count, 6u, &made.view);
+    }
+    for (i = 0u; i < level_count && r == HDRP_OK; ++i) {
+        r = hdrp_i_gpu_vk_image_view(gpu, made.image, format, VK_IMAGE_VIEW_TYPE_2D_ARRAY, i, 1u,
+                                     6u, &made.levels[i]);
+    }
+    if (r != HDRP_OK) {
+        hdrp_gpu_vk_cube_destroy(gpu, &made);
+        return r;
+    }
+    hdrp_i_gpu_vk_name(gpu, VK_OBJECT_TYPE_IMAGE, (uint64_t)made.image, name);
+    *cube = made;
+    return HDRP_OK;
+}
+
+HDRP_API void hdrp_gpu_vk_cube_destroy(const hdrp_gpu_vk* gpu, hdrp_gpu_vk_cube* cube)
+{
+    uint32_t i;
+    if (!gpu || !cube || cube->image == VK_NULL_HANDLE) {
+        return;
+    }
+    for (i = 0u; i < HDRP_GPU_VK_CUBE_LEVELS_MAX; ++i) {
+        gpu->vk.DestroyImageView(gpu->desc.device, cube->levels[i], gpu->desc.allocation);
+    }
+    gpu->vk.DestroyImageView(gpu->desc.device, cube->view, gpu->desc.allocation);
+    gpu->vk.DestroyImage(gpu->desc.device, cube->image, gpu->desc.allocation);
+    hdrp_i_gpu_vk_release(gpu, &cube->block);
+    memset(cube, 0, sizeof *cube);
+}
+
 /* ---- recording ------------------------------------------------------------------------------- */
 
 /* What a binding is bound to: the image or the buffer. */
@@ -611,6 +736,13 @@ typedef struct hdrp_i_gpu_vk_bound {
     VkDescriptorImageInfo image;
     VkDescriptorBufferInfo buffer;
 } hdrp_i_gpu_vk_bound;
+
+HDRP_I_GPU_VK_FN void hdrp_i_gpu_vk_bound_buffer(hdrp_i_gpu_vk_bound* bound,
+                                                 const hdrp_gpu_vk_buffer* buffer)
+{
+    bound->buffer.buffer = buffer->buffer;
+    bound->buffer.range = VK_WHOLE_SIZE;
+}
 
 /* A set of a pass for the frame that is recorded. */
 HDRP_I_GPU_VK_FN hdrp_result hdrp_i_gpu_vk_bind(hdrp_gpu_vk* gpu,
@@ -707,9 +839,11 @@ HDRP_I_GPU_VK_FN void hdrp_i_gpu_vk_update(const hdrp_gpu_vk* gpu, VkCommandBuff
 }
 
 /* What a pass writes is ordered after everything that shaders and copies did to it before, or seen
- * by them afterwards. With an image its layout changes too. */
-HDRP_I_GPU_VK_FN void hdrp_i_gpu_vk_order(const hdrp_gpu_vk* gpu, VkCommandBuffer commands,
-                                          int before, VkImage image)
+ * by them afterwards. With an image the layout of the layers of a level changes too: from the one
+ * that is given to VK_IMAGE_LAYOUT_GENERAL, or afterwards to it. */
+HDRP_I_GPU_VK_FN void hdrp_i_gpu_vk_order_level(const hdrp_gpu_vk* gpu, VkCommandBuffer commands,
+                                                int before, VkImage image, uint32_t level,
+                                                uint32_t layer_count, VkImageLayout layout)
 {
     VkPipelineStageFlags others = gpu->shader_stages | VK_PIPELINE_STAGE_TRANSFER_BIT;
     VkPipelineStageFlags own = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;
@@ -727,17 +861,27 @@ HDRP_I_GPU_VK_FN void hdrp_i_gpu_vk_order(const hdrp_gpu_vk* gpu, VkCommandBuffe
     one.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;
     one.srcAccessMask = from;
     one.dstAccessMask = to;
-    one.oldLayout = before ? VK_IMAGE_LAYOUT_UNDEFINED : VK_IMAGE_LAYOUT_GENERAL;
-    one.newLayout = before ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    one.oldLayout = before ? layout : VK_IMAGE_LAYOUT_GENERAL;
+    one.newLayout = before ? VK_IMAGE_LAYOUT_GENERAL : layout;
     one.srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
     one.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
     one.image = image;
     one.subresourceRange.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT;
+    one.subresourceRange.baseMipLevel = level;
     one.subresourceRange.levelCount = 1u;
-    one.subresourceRange.layerCount = 1u;
+    one.subresourceRange.layerCount = layer_count;
     gpu->vk.CmdPipelineBarrier(commands, before ? others : own, before ? own : others, 0u,
                                image == VK_NULL_HANDLE ? 1u : 0u, &all, 0u, NULL,
                                image == VK_NULL_HANDLE ? 0u : 1u, &one);
+}
+
+/* The same of all of an image whose contents before do not matter. */
+HDRP_I_GPU_VK_FN void hdrp_i_gpu_vk_order(const hdrp_gpu_vk* gpu, VkCommandBuffer commands,
+                                          int before, VkImage image)
+{
+    hdrp_i_gpu_vk_order_level(gpu, commands, before, image, 0u, 1u,
+                              before ? VK_IMAGE_LAYOUT_UNDEFINED
+                                     : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
 }
 
 #ifdef __cplusplus

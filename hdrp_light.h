@@ -1421,6 +1421,14 @@ HDRP_FN hdrp_light_incident hdrp_light_eval(hdrp_light light, hdrp_v3 position)
     return r;
 }
 
+/* hdrp_light_sine of lights that are not directional. */
+HDRP_FN float hdrp_i_light_sine_near(hdrp_light light, hdrp_light_incident incident)
+{
+    float size = light.forward_radius.w;
+    float sine = hdrp_min(size / hdrp_max(incident.distance_m, 1e-6f), 0.99f);
+    return hdrp_light_type(light) == HDRP_LIGHT_TYPE_BOX || !(size > 0.0f) ? 0.0f : sine;
+}
+
 /** Sine of half the angle at which the source of a light is seen.
  *  light     valid
  *  incident  valid  of the light, at the place that sees it
@@ -1431,25 +1439,30 @@ HDRP_FN hdrp_light_incident hdrp_light_eval(hdrp_light light, hdrp_v3 position)
  *  source    a ball of the radius of the record; a disc of its angle in the sky */
 HDRP_FN float hdrp_light_sine(hdrp_light light, hdrp_light_incident incident)
 {
-    hdrp_u32 type = hdrp_light_type(light);
-    float size = light.forward_radius.w;
-    float sky = hdrp_i_light_sin(hdrp_clamp(0.5f * size, 0.0f, HDRP_HALF_PI));
-    float near_by = hdrp_min(size / hdrp_max(incident.distance_m, 1e-6f), 0.99f);
-    float seen = type == HDRP_LIGHT_TYPE_BOX || !(size > 0.0f) ? 0.0f : near_by;
-    return type == HDRP_LIGHT_TYPE_DIRECTIONAL ? sky : seen;
+    float half_angle = hdrp_clamp(0.5f * light.forward_radius.w, 0.0f, HDRP_HALF_PI);
+    float sine = hdrp_i_light_sine_near(light, incident);
+    return hdrp_light_type(light) == HDRP_LIGHT_TYPE_DIRECTIONAL ? hdrp_i_light_sin(half_angle)
+                                                                 : sine;
+}
+
+/* hdrp_light_variance of a source that is seen under twice an angle of that sine. */
+HDRP_FN float hdrp_i_light_variance_of_sine(float sine)
+{
+    return 0.5f * hdrp_sq(0.5f * sine);
 }
 
 /** Variance of normals that widens a highlight as the size of a source does.
- *  sine     [0,1]  from hdrp_light_sine
- *  returns  [0,0.125]  in units of alpha^2, for hdrp_brdf_lit_view_widened
- *  edges    none
- *  error    none: a model
- *  source   half vectors move by half the angle, so that their slopes are even over a disc of radius
- *           sine / 2, whose variance along an axis is a quarter of its square; alpha^2 is twice a
- *           variance */
-HDRP_FN float hdrp_light_variance(float sine)
+ *  light     valid
+ *  incident  valid  of the light, at the place that sees it
+ *  returns   [0,0.125]  in units of alpha^2, for hdrp_brdf_lit_view_widened
+ *  edges     those of hdrp_light_sine
+ *  error     none: a model
+ *  source    half vectors move by half the angle, so that their slopes are even over a disc of
+ *            radius sine / 2, whose variance along an axis is a quarter of its square; alpha^2 is
+ *            twice a variance */
+HDRP_FN float hdrp_light_variance(hdrp_light light, hdrp_light_incident incident)
 {
-    return 0.5f * hdrp_sq(0.5f * sine);
+    return hdrp_i_light_variance_of_sine(hdrp_light_sine(light, incident));
 }
 
 #endif /* HDRP_LIGHT_H */

@@ -42,6 +42,7 @@
  *   colour: linear_from_srgb srgb_from_linear linear_from_srgb_fast srgb_from_linear_fast
  *       v3_linear_from_srgb v3_srgb_from_linear v3_linear_from_srgb_fast v3_srgb_from_linear_fast
  *       luminance
+ *   display: tonemap_neutral tonemap dither_from_hash dithered
  *   colour temperature: rec709_from_kelvin rec709_from_kelvin_fast
  *   surface gradients: surface_frame_from_vertex surface_footprint_from_position basis_from_uv
  *       normal_from_xy normal_from_rgb normal_from_ag derivative_from_normal
@@ -1154,6 +1155,83 @@ HDRP_FN hdrp_v3 hdrp_v3_srgb_from_linear_fast(hdrp_v3 v)
 HDRP_FN float hdrp_luminance(hdrp_v3 color)
 {
     return 0.2126f * color.x + 0.7152f * color.y + 0.0722f * color.z;
+}
+
+/* >>display
+ * From light that was exposed, so that 1 is the white of the display, to the codes it shows. */
+
+/* Curves of hdrp_tonemap. */
+#define HDRP_TONEMAP_NEUTRAL 0u /* hdrp_tonemap_neutral */
+#define HDRP_TONEMAP_CLAMP   1u /* none: what is above 1 is 1 */
+
+/** Khronos PBR Neutral: base colours under white light come out as they were set, up to 0.8, and
+ *  highlights are compressed towards white.
+ *  color    [0,1e18]  exposed linear Rec.709
+ *  returns  [0,1]     display-referred linear Rec.709
+ *  edges    NaN and what is below 0 give 0, infinity is as 1e18, which is white
+ *  error    <= 2e-7 absolute  @accuracy tonemap_neutral
+ *  source   Khronos Group 2024, "Khronos PBR Neutral Tone Mapper" */
+HDRP_FN hdrp_v3 hdrp_tonemap_neutral(hdrp_v3 color)
+{
+    float start = 0.8f - 0.04f; /* where compression begins; 0.04 is the F0 it takes away */
+    float d = 1.0f - start;
+    hdrp_v3 v = hdrp_v3_make(hdrp_clamp(color.x, 0.0f, 1e18f), hdrp_clamp(color.y, 0.0f, 1e18f),
+                             hdrp_clamp(color.z, 0.0f, 1e18f));
+    float low = hdrp_min(v.x, hdrp_min(v.y, v.z));
+    float offset = low < 0.08f ? low - 6.25f * low * low : 0.04f;
+    float peak, limited, white;
+    v = hdrp_v3_sub(v, hdrp_v3_splat(offset));
+    peak = hdrp_v3_max_component(v);
+    limited = 1.0f - d * d / (hdrp_max(peak, start) + d - start);
+    white = 1.0f - 1.0f / (0.15f * (hdrp_max(peak, start) - limited) + 1.0f);
+    limited = peak >= start ? limited : peak;
+    white = peak >= start ? white : 0.0f;
+    v = hdrp_v3_scale(v, peak >= start ? limited / peak : 1.0f);
+    return hdrp_v3_saturate(hdrp_v3_lerp(v, hdrp_v3_splat(limited), white));
+}
+
+/** A tone curve by its number.
+ *  color    [0,1e18]  exposed linear Rec.709
+ *  curve    [0,1]     HDRP_TONEMAP_...
+ *  returns  [0,1]     display-referred linear Rec.709
+ *  edges    as hdrp_tonemap_neutral; a number above 1 counts as HDRP_TONEMAP_CLAMP
+ *  error    none: delegates to hdrp_tonemap_neutral
+ *  source   definition */
+HDRP_FN hdrp_v3 hdrp_tonemap(hdrp_v3 color, hdrp_u32 curve)
+{
+    hdrp_v3 r = hdrp_v3_saturate(color);
+    if (curve == HDRP_TONEMAP_NEUTRAL) {
+        r = hdrp_tonemap_neutral(color);
+    }
+    return r;
+}
+
+/** Noise for hdrp_dithered that adds nothing to the mean and keeps the variance of codes the same
+ *  everywhere: triangular.
+ *  hash     any    a random number, such as hdrp_hash3 of a pixel and a frame
+ *  returns  [-1,1]  0 most often
+ *  edges    none
+ *  error    none: exact
+ *  source   Lipshitz et al. 1992, "Quantization and Dither: A Theoretical Survey" */
+HDRP_FN float hdrp_dither_from_hash(hdrp_u32 hash)
+{
+    return (hdrp_f32_from_u32(hash >> 16) - hdrp_f32_from_u32(hash & 0xffffu)) * (1.0f / 65536.0f);
+}
+
+/** The code of a value, as a fraction of the largest code, after noise was added.
+ *  x        [0,1]      value
+ *  largest  [1,65535]  code of 1: 255 for 8 bits
+ *  noise    [-1,1]     [codes]  of hdrp_dither_from_hash; 0: none
+ *  returns  [0,1]      a whole number over largest
+ *  edges    exactly 0 at 0 and 1 at 1, whatever the noise, which fades within a code of both ends;
+ *           limited to [0,1], NaN gives 0
+ *  error    none: rounding is its purpose
+ *  source   definition */
+HDRP_FN float hdrp_dithered(float x, float largest, float noise)
+{
+    float v = hdrp_saturate(x) * largest;
+    float room = hdrp_min(hdrp_min(v, largest - v), 1.0f);
+    return hdrp_clamp(hdrp_floor(v + noise * room + 0.5f), 0.0f, largest) / largest;
 }
 
 /* >>colour temperature

@@ -1278,7 +1278,7 @@ HDRP_FN hdrp_brdf_data hdrp_i_pack_gbuffer_decode_sss(hdrp_brdf_data d, hdrp_v4 
  *  error     none: see hdrp_pack_gbuffer_encode
  *  source    Lagarde and Golubev 2018, "The Road toward Unified Rendering with Unity's High
  *            Definition Render Pipeline", GBuffer slides
- *  note      a caller whose diffusion profiles have an F0 or a transmittance sets them afterwards */
+ *  note      a caller whose profiles have an F0 or a transmittance sets them afterwards */
 HDRP_FN hdrp_brdf_data hdrp_pack_gbuffer_decode_features(hdrp_pack_gbuffer g, hdrp_u32 targets,
                                                          hdrp_u32 features)
 {

@@ -17,7 +17,8 @@
  *     views[n] = hdrp_shadow_view_light(light, face, near_m, maps[n], settings);   of other lights
  *     ... casters are drawn with the projection of each view, into its square ...
  *     shadow = hdrp_shadow_cascades_visibility(&atlas, views, 4, position, normal);
- *     shadow = hdrp_shadow_visibility(&atlas, views[n], position, normal);
+ *     face = hdrp_shadow_map_of_direction(views[n], from_light);      0 unless it shines all around
+ *     shadow = hdrp_shadow_visibility(&atlas, &views[n + face], position, normal);
  *
  * The contract of the bias. Nothing is added to depths when casters are drawn: receivers move along
  * their normal, by as many texels as the filter and the slope ask for, hdrp_shadow_offset_texels. A
@@ -27,7 +28,7 @@
  *     - coordinates are at most 4 times the depth range of the view, and maps 128 px or more,
  *     - settings.depth_step is that of the depth format, where it is coarser than 2^-20.
  * Shadows move by no more than those texels: at most 1.05 sqrt(2) times hdrp_shadow_filter_radius,
- * 0.8 texels without a filter and 3 and 4.5 with those of 3 x 3 and 5 x 5, and by half a tenth of
+ * 0.8 texels without a filter and 3 and 4.5 with those of 3 x 3 and 5 x 5, and by a twentieth of
  * that where the light falls along the normal. With settings.slope_max above 0 depths follow the
  * plane of the receiver within the filter, and only surfaces steeper than that are moved. This is
  * for normals of the geometry: to those of a normal map, whose planes are none, it gives acne.
@@ -185,7 +186,8 @@ HDRP_FN hdrp_u32 hdrp_shadow_border_px(hdrp_u32 filter_kind)
 }
 
 /* Weights of up to six texels in a row: of the texels at base, base + 2 and base + 4 from the one
- * whose centre is last at or before the position, and of those behind each. */
+ * whose centre is last at or before the position, and of those behind each. Made by
+ * hdrp_shadow_weights_make. */
 struct hdrp_shadow_weights {
     hdrp_v3 even; /* [0,1] */
     hdrp_v3 odd;  /* [0,1] */
@@ -253,9 +255,9 @@ HDRP_FN hdrp_shadow_taps hdrp_shadow_taps_make(hdrp_shadow_weights weights)
     hdrp_shadow_taps t;
     hdrp_v3 w = hdrp_v3_add(weights.even, weights.odd);
     t.weight = hdrp_v3_make(hdrp_min(w.x, 1.0f), hdrp_min(w.y, 1.0f), hdrp_min(w.z, 1.0f));
-    t.place = hdrp_v3_make(weights.base + weights.odd.x / hdrp_max(w.x, HDRP_FLT_MIN),
-                           weights.base + 2.0f + weights.odd.y / hdrp_max(w.y, HDRP_FLT_MIN),
-                           weights.base + 4.0f + weights.odd.z / hdrp_max(w.z, HDRP_FLT_MIN));
+    t.place = hdrp_v3_make(weights.base + weights.odd.x / hdrp_max(w.x, 1e-4f),
+                           weights.base + 2.0f + weights.odd.y / hdrp_max(w.y, 1e-4f),
+                           weights.base + 4.0f + weights.odd.z / hdrp_max(w.z, 1e-4f));
     return t;
 }
 

@@ -9,15 +9,15 @@
 #define FILLS_LISTS
 #include "cull_lists.glsl"
 
-#define BATCH     1024
-#define OF_THREAD 4 // slices: HDRP_CULL_SLICES_MAX / GROUP
+#define BATCH 1024
 
-layout(local_size_x = GROUP) in;
 
 shared uint hits[BATCH]; // candidate of the batch | category << 10 | first slice << 12 | last << 20
 shared uint needed;      // entries of all hits
 shared uint dropped;
-shared uint scan[GROUP];
+shared uint scan[GROUP_MAX];
+// Of each slice the counts of the four categories, 16 bits each; then in x where its next entry goes.
+shared uvec2 counts[HDRP_CULL_SLICES_MAX];
 
 uint tile_index;
 uint first_candidate;
@@ -26,25 +26,24 @@ float scale;
 Window window;
 
 // The slices of a candidate, as hits keep them; false where it misses the tile.
-bool ask(uint candidate, out uint hit, out uint order, out uint index)
+bool ask(uint candidate, out uint hit)
 {
-    index = coarse[first_candidate + candidate];
-    Seen s = seen_shapes[index];
-    hdrp_cull_interval r = depths_in(window, index, s, false);
-    order = s.order;
-    hit = 0u;
-    if (r.nearest > r.farthest) {
-        return false;
-    }
-    hit = candidate % BATCH | category_of(s) << 10 |
+    uint index = coarse[first_candidate + candidate];
+    hdrp_cull_interval r = depths_in(window, index, seen_shapes[index], false);
+    hit = candidate % BATCH | category_of(seen_shapes[index]) << 10 |
           hdrp_cull_slice(frame.grid, scale, r.nearest) << 12 |
           hdrp_cull_slice(frame.grid, scale, r.farthest) << 20;
-    return true;
+    return r.nearest <= r.farthest;
 }
 
 uint slices_of(uint hit)
 {
     return 1u + (hit >> 20) - (hit >> 12 & 255u);
+}
+
+bool has_room(uint index)
+{
+    return is_kept(seen_shapes[index].order, index);
 }
 
 // The hits of a batch in order; returns how many. With a limit those without room are left out.
@@ -54,9 +53,9 @@ uint collect(uint batch, bool limited)
     uint n = 0u;
     for (uint from = batch * BATCH; from < end; from += GROUP) {
         uint candidate = from + gl_LocalInvocationIndex;
-        uint hit, order, index, total;
-        bool found = candidate < end && ask(candidate, hit, order, index);
-        if (found && limited && !is_kept(order, index)) {
+        uint hit, total;
+        bool found = candidate < end && ask(candidate, hit);
+        if (found && limited && !has_room(coarse[first_candidate + candidate])) {
             atomicAdd(dropped, 1u); // what cells say is read before they are asked once more
             found = false;
         }
@@ -66,7 +65,7 @@ uint collect(uint batch, bool limited)
         }
         n += total;
     }
-    barrier();
+    wait_for_group();
     return n;
 }
 
@@ -111,7 +110,6 @@ uint end_slice()
     return min(first_slice() + of_thread, frame.grid.cells.x);
 }
 
-// Counts of the four categories, 16 bits each.
 uvec2 one_more(uvec2 counts, uint category)
 {
     uint one = 1u << ((category & 1u) << 4);
@@ -123,21 +121,25 @@ uint sum_of(uvec2 counts)
     return (counts.x & 0xffffu) + (counts.x >> 16) + (counts.y & 0xffffu) + (counts.y >> 16);
 }
 
-bool is_in(uint slice, uint end, uint hit)
+// The slices of a thread that a hit reaches.
+uint begin_in(uint first, uint hit)
 {
-    return slice < end && slice >= (hit >> 12 & 255u) && slice <= hit >> 20;
+    return max(first, hit >> 12 & 255u);
 }
 
-void count_slices(uint n, inout uvec2 counts[OF_THREAD])
+uint end_in(uint end, uint hit)
+{
+    return min(end, 1u + (hit >> 20));
+}
+
+void count_slices(uint n)
 {
     uint first = first_slice();
     uint end = end_slice();
     for (uint h = 0u; h < n; ++h) {
         uint hit = hits[h];
-        for (uint j = 0u; j < OF_THREAD; ++j) {
-            if (is_in(first + j, end, hit)) {
-                counts[j] = one_more(counts[j], hit >> 10 & 3u);
-            }
+        for (uint k = begin_in(first, hit); k < end_in(end, hit); ++k) {
+            counts[k] = one_more(counts[k], hit >> 10 & 3u);
         }
     }
 }
@@ -147,43 +149,41 @@ uint place_of_thread(uint own)
 {
     uint thread = gl_LocalInvocationIndex;
     scan[thread] = own;
-    barrier();
+    wait_for_group();
     for (uint step = 1u; step < GROUP; step <<= 1) {
         uint before = thread >= step ? scan[thread - step] : 0u;
-        barrier();
+        wait_for_group();
         scan[thread] += before;
-        barrier();
+        wait_for_group();
     }
     return scan[thread] - own;
 }
 
-void write_entries(uint batch, uint n, inout uint next[OF_THREAD])
+void write_entries(uint batch, uint n)
 {
     uint first = first_slice();
     uint end = end_slice();
     for (uint h = 0u; h < n; ++h) {
         uint hit = hits[h];
-        for (uint j = 0u; j < OF_THREAD; ++j) {
-            if (is_in(first + j, end, hit)) {
-                entries[next[j]++] = candidate_of(batch, hit) | 0xffff0000u;
-            }
+        for (uint k = begin_in(first, hit); k < end_in(end, hit); ++k) {
+            entries[counts[k].x++] = candidate_of(batch, hit) | 0xffff0000u;
         }
     }
 }
 
-// Writes the cells of a thread; next is where the entries of each begin.
-void write_cells(uvec2 counts[OF_THREAD], out uint next[OF_THREAD])
+// Writes the cells of a thread.
+void write_cells()
 {
     uint own = 0u;
-    for (uint j = 0u; j < OF_THREAD; ++j) {
-        own += sum_of(counts[j]);
+    for (uint k = first_slice(); k < end_slice(); ++k) {
+        own += sum_of(counts[k]);
     }
     uint at = tile_index * frame.grid.cells.y + place_of_thread(own);
-    uint first = first_slice();
-    for (uint k = first; k < end_slice(); ++k) {
-        cells[tile_index * frame.grid.cells.x + k] = uvec4(at, counts[k - first], dropped);
-        next[k - first] = at;
-        at += sum_of(counts[k - first]);
+    for (uint k = first_slice(); k < end_slice(); ++k) {
+        uvec2 of_slice = counts[k];
+        cells[tile_index * frame.grid.cells.x + k] = uvec4(at, of_slice, dropped);
+        counts[k].x = at;
+        at += sum_of(of_slice);
     }
     if (gl_LocalInvocationIndex == 0u) {
         dropped_of_tile[tile_index] = dropped;
@@ -201,8 +201,6 @@ void main()
     uvec2 tile = gl_WorkGroupID.xy;
     uvec2 begin = tile * frame.grid.tiles.xy;
     uint n = 0u;
-    uvec2 counts[OF_THREAD] = uvec2[OF_THREAD](uvec2(0u), uvec2(0u), uvec2(0u), uvec2(0u));
-    uint next[OF_THREAD];
     tile_index = tile.y * frame.grid.tiles.z + tile.x;
     first_candidate = candidates_of(tile);
     candidate_count = coarse[first_candidate - 1u];
@@ -214,8 +212,11 @@ void main()
         needed = 0u;
         dropped = 0u;
     }
+    for (uint k = first_slice(); k < end_slice(); ++k) {
+        counts[k] = uvec2(0u);
+    }
     begin_room();
-    barrier();
+    wait_for_group();
     for (int phase = PHASE_MEASURE; phase <= PHASE_WRITE; ++phase) {
         if (phase == PHASE_LEVEL) {
             limited = needed > frame.grid.cells.y;
@@ -227,12 +228,12 @@ void main()
             begin_level();
         }
         if (phase == PHASE_WRITE) {
-            write_cells(counts, next);
+            write_cells();
         }
         if (phase == PHASE_COUNT && gl_LocalInvocationIndex == 0u) {
             dropped = 0u;
         }
-        barrier();
+        wait_for_group();
         for (uint b = 0u; b < batches; ++b) {
             if (is_new) {
                 n = collect(b, limited && phase >= PHASE_COUNT);
@@ -242,11 +243,11 @@ void main()
             } else if (level) {
                 add_digits(b, n, phase - PHASE_LEVEL);
             } else if (phase == PHASE_COUNT) {
-                count_slices(n, counts);
+                count_slices(n);
             } else {
-                write_entries(b, n, next);
+                write_entries(b, n);
             }
-            barrier();
+            wait_for_group();
         }
         if (level) {
             end_level(phase - PHASE_LEVEL);

@@ -9,13 +9,12 @@
 #define SHAPE_ACCESS writeonly
 #include "cull_lists.glsl"
 
-layout(local_size_x = GROUP) in;
 layout(std430, binding = 4) readonly buffer World { hdrp_cull_shape world[]; };
 layout(std430, binding = 5) writeonly buffer Tiles { vec4 tiles[]; };
 
 void main()
 {
-    uint i = gl_GlobalInvocationID.x;
+    uint i = thread_index();
     if (i < frame.grid.tiles.z * frame.grid.tiles.w) { // as long as no depth is known
         tiles[i] = vec4(frame.pixel.z, frame.pixel.w, frame.grid.series.w, 0.0);
     }

@@ -33,6 +33,13 @@ layout(push_constant) uniform Push { uvec4 push; }; // x index of the variant
 
 #include "lit_pixels.glsl"
 
+// Place of a pixel less the eye.
+vec3 offset_of(uvec2 pixel, float z)
+{
+    return hdrp_cull_offset_of_pixel(lighting.camera, float(pixel.x) + 0.5, float(pixel.y) + 0.5,
+                                     float(lighting.picture.x), float(lighting.picture.y), z);
+}
+
 // The material of a pixel.
 hdrp_brdf_data load_material(ivec2 at)
 {
@@ -65,12 +72,15 @@ uint load_layers(ivec2 at)
 
 void light_pixel(uvec2 pixel, uint tile)
 {
-    ivec2 at = ivec2(pixel);
+    // What is found again from one register takes no others meanwhile.
+    uint id = hdrp_cull_tile_id(pixel.x, pixel.y);
     float z = lit_depth(pixel);
     float visibility = 1.0;
     hdrp_lit_surface r;
-    hdrp_brdf_data d;
-    vec3 offset, glow;
+    hdrp_light_state s;
+    vec3 v, position, glow;
+    uint layers;
+    ivec2 at = ivec2(pixel);
     if (z < 0.0) {
         return;
     }
@@ -78,15 +88,17 @@ void light_pixel(uvec2 pixel, uint tile)
         hdrp_i_there_is(HDRP_GPU_VK_LIGHTING_OCCLUSION)) {
         visibility = texelFetch(occlusion, at, 0).x;
     }
-    d = load_material(at);
-    offset = hdrp_cull_offset_of_pixel(lighting.camera, float(pixel.x) + 0.5,
-                                       float(pixel.y) + 0.5, float(lighting.picture.x),
-                                       float(lighting.picture.y), z);
-    r = hdrp_light_surface(d, offset, pixel, tile, z, load_layers(at), visibility);
+    v = hdrp_cull_direction_to_eye(lighting.camera, offset_of(pixel, z));
+    s = hdrp_light_begin(r, load_material(at), v, visibility);
+    at = hdrp_i_pixel(id);
+    layers = load_layers(at);
+    position = offset_of(uvec2(at), z) + hdrp_v3_from_v4(lighting.camera.eye_near);
+    hdrp_light_end(r, s, position, uvec2(at), tile, z, layers);
+    at = hdrp_i_pixel(id);
     glow = hdrp_i_pack_gbuffer_light(texelFetch(rt3, at, 0).xyz);
     if (hdrp_i_has(HDRP_GPU_VK_WORD_SPLIT) &&
         (lighting.lights.w & HDRP_GPU_VK_WORD_SPLIT) != 0u &&
-        (d.features & HDRP_BRDF_FEATURE_SUBSURFACE) != 0u) {
+        (s.d.features & HDRP_BRDF_FEATURE_SUBSURFACE) != 0u) {
         imageStore(diffuse, at, vec4(r.diffuse * lighting.scales.x, 1.0));
         r.diffuse = vec3(0.0);
     }
@@ -99,13 +111,17 @@ void main()
     uvec2 at = uvec2(hdrp_cull_tile_id_x(id), hdrp_cull_tile_id_y(id));
     uvec2 begin = at * lighting.grid.tiles.xy;
     uvec2 end = min(begin + lighting.grid.tiles.xy, lighting.picture.xy);
-    uint wave = gl_LocalInvocationIndex >> 6;
-    uint lane = gl_LocalInvocationIndex & 63u;
-    uvec2 own = begin + uvec2((wave & 1u) * 8u + (lane & 7u), (wave >> 1) * 8u + (lane >> 3));
     uint tile = at.y * lighting.grid.tiles.z + at.x;
-    for (uint y = own.y; y < end.y; y += SIDE) {
-        for (uint x = own.x; x < end.x; x += SIDE) {
-            light_pixel(uvec2(x, y), tile);
+    // Loops over what does not depend on the thread.
+    for (uint y = begin.y; y < end.y; y += SIDE) {
+        for (uint x = begin.x; x < end.x; x += SIDE) {
+            uint wave = gl_LocalInvocationIndex >> 6;
+            uint lane = gl_LocalInvocationIndex & 63u;
+            uvec2 pixel = uvec2(x + (wave & 1u) * 8u + (lane & 7u),
+                                y + (wave >> 1) * 8u + (lane >> 3));
+            if (pixel.x < end.x && pixel.y < end.y) {
+                light_pixel(pixel, tile);
+            }
         }
     }
 }

@@ -27,17 +27,6 @@ layout(push_constant) uniform Push
 #define DEVICE_DEPTH  1u
 #define PLAIN_NORMALS 2u
 
-vec3 position_of(vec2 pixel, vec2 size, float z)
-{
-    float x = camera.window.x + camera.window.z * (pixel.x / size.x);
-    float y = camera.window.y + camera.window.w * (1.0 - pixel.y / size.y);
-    float spread = camera.forward_orthographic.w > 0.0 ? 1.0 : z;
-    vec3 p = hdrp_v3_scale(hdrp_v3_from_v4(camera.forward_orthographic), z);
-    p = hdrp_v3_mad(p, hdrp_v3_from_v4(camera.right_far), x * spread);
-    p = hdrp_v3_mad(p, hdrp_v3_from_v4(camera.up), y * spread);
-    return hdrp_v3_add(hdrp_v3_from_v4(camera.eye_near), p);
-}
-
 vec3 normal_of(ivec2 at)
 {
     vec4 texel = texelFetch(normals, at, 0);
@@ -58,7 +47,10 @@ void main()
     float z = (picture.y & DEVICE_DEPTH) != 0u ? hdrp_view_depth(device, texel) : texel;
     vec4 r = vec4(1.0);
     if (z >= 0.0 && z < camera.right_far.w) { // else sky
-        vec3 position = position_of(vec2(at) + 0.5, vec2(size), z);
+        vec2 pixel = vec2(at) + 0.5;
+        vec3 offset =
+            hdrp_cull_offset_of_pixel(camera, pixel.x, pixel.y, float(size.x), float(size.y), z);
+        vec3 position = hdrp_v3_add(hdrp_v3_from_v4(camera.eye_near), offset);
         vec3 normal = normal_of(at);
         uint first = picture.z;
         for (uint light = 0u; light < 4u; ++light) {

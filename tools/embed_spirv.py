@@ -5,7 +5,9 @@ Each shader becomes an array of words, hdrp_i_gpu_vk_spirv_<name>, between the m
 that it names in a line "// header: hdrp_gpu_vk_<topic>.h":
 compiled by glslangValidator, optimised and stripped by spirv-opt, checked by spirv-val. A shader
 that says "// contraction: none" has its sums and products decorated with NoContraction first, so
-that neither spirv-opt nor a driver rounds them in another way than C does.
+that neither spirv-opt nor a driver rounds them in another way than C does. One that says
+"// inline: none" keeps its functions, which drivers inline anyway: long formulas that are called
+from several places are embedded once.
 
 With --check nothing is written: exit status 1 when the words in a header are stale. Other versions
 of the compilers make other words, so that without the pinned ones the check is skipped (exit status
@@ -27,6 +29,13 @@ SKIPPED = 77
 PINNED = {"glslangValidator": "Glslang Version: 11:12.0.0",
           "spirv-opt": "SPIRV-Tools v2023.1", "spirv-val": "SPIRV-Tools v2023.1"}
 HEADER = re.compile(r"^// header: (\w+\.h)$", re.M)
+NO_INLINING = re.compile(r"^// inline: none$", re.M)
+# What -O does, without the passes that inline and those that follow up on it.
+WITHOUT_INLINING = ("eliminate-dead-functions private-to-local scalar-replacement=100 "
+                    "convert-local-access-chains eliminate-local-single-block "
+                    "eliminate-local-single-store ssa-rewrite ccp eliminate-dead-code-aggressive "
+                    "redundancy-elimination simplify-instructions "
+                    "eliminate-dead-code-aggressive compact-ids").split()
 NO_CONTRACTION = re.compile(r"^// contraction: none$", re.M)
 
 MAGIC, HEADER_WORDS = 0x07230203, 5
@@ -107,9 +116,11 @@ def compiled(source, include, folder):
     """The words of a shader."""
     plain, final = folder / f"{source.stem}.spv", folder / f"{source.stem}.final.spv"
     run("glslangValidator", "-V", "--target-env", TARGET, f"-I{include}", source, "-o", plain)
-    if NO_CONTRACTION.search(source.read_text(encoding="utf-8")):
+    text = source.read_text(encoding="utf-8")
+    if NO_CONTRACTION.search(text):
         write_words(plain, without_contraction(read_words(plain)))
-    run("spirv-opt", "-O", "--strip-debug", f"--target-env={TARGET}", plain, "-o", final)
+    passes = [f"--{name}" for name in WITHOUT_INLINING] if NO_INLINING.search(text) else ["-O"]
+    run("spirv-opt", *passes, "--strip-debug", f"--target-env={TARGET}", plain, "-o", final)
     run("spirv-val", "--target-env", TARGET, final)
     return read_words(final)
 

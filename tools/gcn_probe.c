@@ -8,7 +8,9 @@
  * on Mesa's null device, which compiles for GPUs that are not there.
  *
  * A shader may use, in set 0: storage buffers at bindings 0 to 2, a combined image sampler at 3,
- * and 16 bytes of push constants. */
+ * and 16 bytes of push constants. With a fourth word, BINDINGS, it uses those instead, a letter for
+ * each from 0 on, and 128 bytes of push constants: s storage image, t sampled image, c sampled
+ * image with a sampler, b storage buffer, u uniform buffer. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,7 +20,8 @@
 #define MAX_SHADER_BYTES (16u << 20)
 #define MAX_STATISTICS   64u
 #define MAX_TEXTS        16u
-#define BUFFERS          3u
+#define MAX_BINDINGS     32u
+#define BINDINGS         "bbbc"
 
 typedef struct probe {
     VkInstance instance;
@@ -99,23 +102,39 @@ static void open_device(probe* p)
     }
 }
 
-static void open_layout(probe* p)
+static VkDescriptorType type_of(char letter)
 {
-    VkDescriptorSetLayoutBinding bindings[BUFFERS + 1];
+    switch (letter) {
+    case 's':
+        return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+    case 't':
+        return VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
+    case 'c':
+        return VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    case 'u':
+        return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+    default:
+        return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    }
+}
+
+static void open_layout(probe* p, const char* letters, uint32_t push_bytes)
+{
+    VkDescriptorSetLayoutBinding bindings[MAX_BINDINGS];
     VkDescriptorSetLayoutCreateInfo set = {0};
-    VkPushConstantRange push = {VK_SHADER_STAGE_COMPUTE_BIT, 0, 16};
+    VkPushConstantRange push = {VK_SHADER_STAGE_COMPUTE_BIT, 0, 0};
     VkPipelineLayoutCreateInfo layout = {0};
     uint32_t i;
     memset(bindings, 0, sizeof bindings);
-    for (i = 0; i <= BUFFERS; ++i) {
+    push.size = push_bytes;
+    for (i = 0; letters[i] && i < MAX_BINDINGS; ++i) {
         bindings[i].binding = i;
-        bindings[i].descriptorType = i < BUFFERS ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
-                                                 : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+        bindings[i].descriptorType = type_of(letters[i]);
         bindings[i].descriptorCount = 1;
         bindings[i].stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
     }
     set.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-    set.bindingCount = BUFFERS + 1;
+    set.bindingCount = i;
     set.pBindings = bindings;
     check(vkCreateDescriptorSetLayout(p->device, &set, NULL, &p->set_layout),
           "vkCreateDescriptorSetLayout");
@@ -125,6 +144,12 @@ static void open_layout(probe* p)
     layout.pushConstantRangeCount = 1;
     layout.pPushConstantRanges = &push;
     check(vkCreatePipelineLayout(p->device, &layout, NULL, &p->layout), "vkCreatePipelineLayout");
+}
+
+static void close_layout(probe* p)
+{
+    vkDestroyPipelineLayout(p->device, p->layout, NULL);
+    vkDestroyDescriptorSetLayout(p->device, p->set_layout, NULL);
 }
 
 static VkShaderModule read_shader(const probe* p, const char* path)
@@ -241,20 +266,20 @@ static void report(const probe* p, const char* name, const char* path, const cha
 int main(int argc, char** argv)
 {
     probe p = {0};
-    char line[4096], name[256], path[3072], mask[64];
+    char line[4096], name[256], path[3072], mask[64], bindings[MAX_BINDINGS + 1];
     p.folder = argc > 1 ? argv[1] : NULL;
     open_instance(&p);
     open_device(&p);
-    open_layout(&p);
     while (fgets(line, sizeof line, stdin)) {
-        if (sscanf(line, "%255s %3071s %63s", name, path, mask) != 3) {
-            fprintf(stderr, "gcn_probe: not NAME FILE MASK: %s", line);
+        int words = sscanf(line, "%255s %3071s %63s %32s", name, path, mask, bindings);
+        if (words < 3) {
+            fprintf(stderr, "gcn_probe: not NAME FILE MASK [BINDINGS]: %s", line);
             return 1;
         }
+        open_layout(&p, words > 3 ? bindings : BINDINGS, words > 3 ? 128 : 16);
         report(&p, name, path, mask);
+        close_layout(&p);
     }
-    vkDestroyPipelineLayout(p.device, p.layout, NULL);
-    vkDestroyDescriptorSetLayout(p.device, p.set_layout, NULL);
     vkDestroyDevice(p.device, NULL);
     vkDestroyInstance(p.instance, NULL);
     return 0;

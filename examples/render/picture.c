@@ -2,7 +2,6 @@
 
 #include "file.h"
 #include "image.h"
-#include "tonemap.h"
 
 #include <stdlib.h>
 
@@ -57,7 +56,7 @@ static bool write_png(const char* path, int width, int height, const float* film
     for (size_t i = 0; i < pixels; ++i) {
         hdrp_v3 v = hdrp_v3_make(film[i * 4], film[i * 4 + 1], film[i * 4 + 2]);
         if (encoding == RD_ENCODE_LIT) {
-            v = rd_tonemap(hdrp_v3_scale(v, scale));
+            v = hdrp_tonemap_neutral(hdrp_v3_scale(v, scale));
         }
         rgb[i * 3] = code(v.x, encoding, scale);
         rgb[i * 3 + 1] = code(v.y, encoding, scale);

@@ -146,6 +146,48 @@ static void rec709_from_kelvin_fast_1931_error(acc* a)
     kelvin_error(a, hdrp_rec709_from_kelvin_fast, cie_1931_2_degree, false);
 }
 
+/* As published, in double: with the early return, and white as a mix of two. */
+static void neutral(const double c[3], double shown[3])
+{
+    double low = fmin(c[0], fmin(c[1], c[2]));
+    double offset = low < 0.08 ? low - 6.25 * low * low : 0.04;
+    double peak = fmax(c[0], fmax(c[1], c[2])) - offset;
+    double limited = 1.0 - 0.24 * 0.24 / (peak + 0.24 - 0.76);
+    double white = 1.0 - 1.0 / (0.15 * (peak - limited) + 1.0);
+    for (int i = 0; i < 3; ++i) {
+        shown[i] = c[i] - offset;
+        if (peak >= 0.76) {
+            shown[i] = shown[i] * (limited / peak) * (1.0 - white) + limited * white;
+        }
+    }
+}
+
+static void tonemap_neutral_error(acc* a)
+{
+    for (int i = 0; i < 400000; ++i) {
+        double range = i % 2 ? 2.0 : 1e18, least = i % 2 ? 1e-3 : 1e-6;
+        float c[3];
+        double exact[3], reference[3];
+        hdrp_v3 shown;
+        for (int k = 0; k < 3; ++k) {
+            c[k] = (float)acc_log_uniform(a, least, range);
+            exact[k] = (double)c[k];
+        }
+        if (i % 5 == 0) {
+            c[i % 3] = 0.0f;
+            exact[i % 3] = 0.0;
+        }
+        neutral(exact, reference);
+        shown = hdrp_tonemap_neutral(hdrp_v3_make(c[0], c[1], c[2]));
+        ACC_ADD(a, fabs((double)shown.x - reference[0]), "(%.9g, %.9g, %.9g)", exact[0], exact[1],
+                exact[2]);
+        ACC_ADD(a, fabs((double)shown.y - reference[1]), "(%.9g, %.9g, %.9g)", exact[0], exact[1],
+                exact[2]);
+        ACC_ADD(a, fabs((double)shown.z - reference[2]), "(%.9g, %.9g, %.9g)", exact[0], exact[1],
+                exact[2]);
+    }
+}
+
 const acc_entry acc_math_colour[] = {
     {"linear_from_srgb", linear_from_srgb_error},
     {"linear_from_srgb_hdr", linear_from_srgb_hdr_error},
@@ -155,6 +197,7 @@ const acc_entry acc_math_colour[] = {
     {"srgb_from_linear_fast", srgb_from_linear_fast_error},
     {"srgb_from_linear_absolute", srgb_from_linear_absolute_error},
     {"luminance", luminance_error},
+    {"tonemap_neutral", tonemap_neutral_error},
     {"rec709_from_kelvin", rec709_from_kelvin_error},
     {"rec709_from_kelvin_fast_1964", rec709_from_kelvin_fast_1964_error},
     {"rec709_from_kelvin_fast_1931", rec709_from_kelvin_fast_1931_error},

@@ -152,9 +152,9 @@ static hdrp_v3 filtered(hdrp_env* env, const prefilter* how, hdrp_v3 axis, float
         return sampled(env, how, axis, alpha);
     }
     env->opening = how->opening;
-    hdrp_i_env_lobe lobe = hdrp_i_env_lobe_make(env, alpha);
+    hdrp_i_env_lobe lobe = hdrp_i_env_lobe_make(alpha, env->opening);
     lobe.axis = axis;
-    return hdrp_i_env_gather(&lobe);
+    return hdrp_i_env_gather(env, &lobe);
 }
 
 static void add_error(result* r, hdrp_v3 v, const double reference[3])

@@ -3,189 +3,7 @@
 #define HDRP_CULL_IMPLEMENTATION
 #include "hdrp_cull.h"
 #include "cull_blocker_test.h"
-
-#define WIDTH  200u
-#define HEIGHT 120u
-#define SHAPES 40u
-#define LIGHTS 30u /* the rest are decals and probes */
-#define LINKS  120u
-#define WALLS  90u
-
-typedef struct world {
-    hdrp_cull_camera camera;
-    hdrp_cull_shape shapes[SHAPES];
-    hdrp_v4 places[LIGHTS];
-    hdrp_cull_blocker_links lights[LIGHTS];
-    uint32_t links[LINKS];
-    hdrp_cull_blocker blockers[WALLS];
-    hdrp_cull_blocker_scene scene;
-    float depth[WIDTH * HEIGHT];
-} world;
-
-static hdrp_v3 in_box(uint64_t* seed, double size)
-{
-    return test_float(test_vec(test_between(seed, -size, size), test_between(seed, -size, size),
-                               test_between(seed, -size, size)));
-}
-
-static void make_world(world* w, uint64_t* seed, bool orthographic)
-{
-    memset(w, 0, sizeof *w);
-    hdrp_v3 eye = hdrp_v3_make(0.0f, 1.0f, 25.0f), ahead = hdrp_v3_make(0.1f, 0.0f, -1.0f);
-    hdrp_v3 up = hdrp_v3_make(0.0f, 1.0f, 0.0f);
-    w->camera = orthographic ? hdrp_cull_camera_orthographic(eye, ahead, up, -15.0f, 15.0f, -9.0f,
-                                                             9.0f, 0.1f, 100.0f)
-                             : hdrp_cull_camera_perspective(eye, ahead, up, -0.8f, 0.8f, -0.5f,
-                                                            0.5f, 0.1f, HDRP_CULL_FAR_INFINITE);
-    for (uint32_t i = 0; i < SHAPES; ++i) {
-        hdrp_v3 p = in_box(seed, 12.0), one = hdrp_v3_splat(1.0f);
-        hdrp_light light = hdrp_light_point(p, one, (float)test_between(seed, 3.0, 15.0));
-        if (i % 5u == 0u) {
-            light = hdrp_light_directional(test_float(test_direction(seed)), one, 0.0f);
-        }
-        if (i < LIGHTS) {
-            w->shapes[i] = hdrp_cull_shape_from_light(light);
-            w->places[i] = hdrp_cull_light_place(light);
-            if (i % 7u == 6u) { /* lights of one room share its walls */
-                w->lights[i] = w->lights[i - 1u];
-                continue;
-            }
-            w->lights[i].first = w->scene.link_count;
-            w->lights[i].count = test_below(seed, 4);
-            w->scene.link_count += w->lights[i].count;
-        } else {
-            w->shapes[i] = hdrp_cull_shape_sphere(
-                p, 5.0f, i % 2u ? HDRP_CULL_CATEGORY_ENVIRONMENT : HDRP_CULL_CATEGORY_DECAL);
-        }
-    }
-    uint32_t walls = 40, next = walls;
-    for (uint32_t i = 0; i < walls; ++i) {
-        w->blockers[i] = hdrp_cull_blocker_rectangle(
-            in_box(seed, 10.0), test_float(test_direction(seed)), up,
-            (float)test_log(seed, 0.5, 15.0), (float)test_log(seed, 0.5, 15.0));
-        if (i % 8u == 0u) {
-            w->blockers[i] =
-                hdrp_cull_blocker_plane(in_box(seed, 10.0), test_float(test_direction(seed)));
-        }
-        if (i % 3u == 0u) {
-            w->blockers[i] = hdrp_cull_blocker_with_portals(w->blockers[i], next, 1u + i % 2u);
-            for (uint32_t k = 0; k < 1u + i % 2u; ++k) {
-                w->blockers[next++] = hdrp_cull_blocker_rectangle(
-                    hdrp_v3_from_v4(w->blockers[i].center), hdrp_v3_from_v4(w->blockers[i].front),
-                    up, 1.0f + (float)k, 1.0f);
-            }
-        }
-    }
-    for (uint32_t i = 0; i < w->scene.link_count; ++i) {
-        w->links[i] = test_below(seed, walls);
-    }
-    w->scene.places = w->places;
-    w->scene.lights = w->lights;
-    w->scene.links = w->links;
-    w->scene.blockers = w->blockers;
-    w->scene.light_count = LIGHTS;
-    w->scene.blocker_count = next;
-    for (uint32_t i = 0; i < WIDTH * HEIGHT; ++i) {
-        uint32_t x = i % WIDTH, y = i / WIDTH;
-        w->depth[i] = 12.0f + 20.0f * (float)((x / 23u * 7u + y / 31u * 5u) % 11u) / 10.0f +
-                      0.02f * (float)(x % 23u);
-    }
-}
-
-/* Lists, before and after blockers. */
-typedef struct grid {
-    hdrp_cull_lists lists;
-    hdrp_cull_set set;
-    hdrp_cull_blocker_set blockers;
-    uint32_t* masks;
-    hdrp_u32x4* old_cells;
-    uint32_t* old_entries;
-    size_t cells, entries;
-    void* blocks[4];
-} grid;
-
-static void* block(size_t bytes)
-{
-    void* p = aligned_alloc(HDRP_MEMORY_ALIGNMENT, HDRP_MEMORY_ROUND_UP(bytes));
-    assert_non_null(p);
-    memset(p, 0xcd, bytes);
-    return p;
-}
-
-static void build(grid* g, const world* w, hdrp_cull_desc desc, bool with_depth)
-{
-    hdrp_cull_depth depth = {w->depth, WIDTH, NULL};
-    hdrp_cull_blocker_desc limits = {LIGHTS, LINKS, WALLS};
-    desc.width_px = WIDTH;
-    desc.height_px = HEIGHT;
-    size_t bytes = hdrp_cull_set_memory_size(SHAPES);
-    g->blocks[0] = block(bytes);
-    assert_int_equal(hdrp_cull_set_init(&g->set, SHAPES, g->blocks[0], bytes), HDRP_OK);
-    bytes = hdrp_cull_memory_size(&desc);
-    g->blocks[1] = block(bytes);
-    assert_int_equal(hdrp_cull_init(&g->lists, &desc, g->blocks[1], bytes), HDRP_OK);
-    bytes = hdrp_cull_blocker_memory_size(&limits);
-    g->blocks[2] = block(bytes);
-    assert_int_equal(hdrp_cull_blocker_init(&g->blockers, &limits, g->blocks[2], bytes), HDRP_OK);
-    assert_int_equal(hdrp_cull_blocker_begin(&g->blockers, &w->scene, &w->camera), HDRP_OK);
-    assert_int_equal(
-        hdrp_cull_blocker_project(&g->blockers, 0, w->scene.light_count + w->scene.blocker_count),
-        HDRP_OK);
-    assert_int_equal(hdrp_cull_set_begin(&g->set, &w->camera, WIDTH, HEIGHT, SHAPES), HDRP_OK);
-    assert_int_equal(hdrp_cull_set_project(&g->set, w->shapes, 0, SHAPES), HDRP_OK);
-    assert_int_equal(hdrp_cull_begin(&g->lists, &g->set), HDRP_OK);
-    if (with_depth) {
-        assert_int_equal(hdrp_cull_measure_depth(&g->lists, &depth, 0, g->lists.grid.tiles.w),
-                         HDRP_OK);
-    }
-    bytes = hdrp_cull_scratch_size(&g->lists.desc);
-    g->blocks[3] = block(bytes);
-    assert_int_equal(hdrp_cull_build(&g->lists, &g->set, &depth, 0, hdrp_cull_rows(&g->lists),
-                                     g->blocks[3], bytes),
-                     HDRP_OK);
-    size_t tiles = (size_t)g->lists.grid.tiles.z * g->lists.grid.tiles.w;
-    g->cells = tiles * g->lists.desc.slice_count;
-    g->entries = tiles * g->lists.desc.entry_capacity;
-    g->old_cells = block(g->cells * sizeof *g->old_cells);
-    g->old_entries = block(g->entries * sizeof *g->old_entries);
-    g->masks = block(g->entries * sizeof *g->masks);
-    memcpy(g->old_cells, g->lists.cells, g->cells * sizeof *g->old_cells);
-    memcpy(g->old_entries, g->lists.entries, g->entries * sizeof *g->old_entries);
-}
-
-static void drop(grid* g)
-{
-    for (int i = 0; i < 4; ++i) {
-        free(g->blocks[i]);
-    }
-    free(g->old_cells);
-    free(g->old_entries);
-    free(g->masks);
-}
-
-/* Applies blockers in a number of jobs, the last range first. */
-static hdrp_cull_blocker_stats apply(grid* g, uint32_t jobs)
-{
-    hdrp_cull_blocker_stats sum = {0};
-    uint32_t tiles = g->lists.grid.tiles.z * g->lists.grid.tiles.w;
-    size_t bytes = hdrp_cull_blocker_scratch_size(&g->blockers);
-    void* scratch = block(bytes);
-    for (uint32_t j = jobs; j-- > 0u;) {
-        hdrp_cull_blocker_job job;
-        uint32_t first = tiles * j / jobs, end = tiles * (j + 1u) / jobs;
-        assert_int_equal(hdrp_cull_blocker_job_begin(&job, &g->blockers, scratch, bytes), HDRP_OK);
-        assert_int_equal(hdrp_cull_apply_blockers(&g->lists, &job, first, end - first, g->masks),
-                         HDRP_OK);
-        sum.lights += job.stats.lights;
-        sum.lights_removed += job.stats.lights_removed;
-        sum.pixel += job.stats.pixel;
-        sum.none += job.stats.none;
-        sum.whole += job.stats.whole;
-        sum.shadows += job.stats.shadows;
-    }
-    free(scratch);
-    return sum;
-}
+#include "cull_blocker_world.h"
 
 /* Where a shape is in the list of a cell, or -1. */
 static int find(const uint32_t* entries, hdrp_u32x4 cell, uint32_t shape)
@@ -202,8 +20,8 @@ static int compare_at(const grid* g, const world* w, float x, float y, float z)
 {
     hdrp_v4 window = w->camera.window;
     float k = w->camera.forward_orthographic.w > 0.0f ? 1.0f : z;
-    float u = (window.x + window.z * x / (float)WIDTH) * k;
-    float v = (window.y + window.w * (1.0f - y / (float)HEIGHT)) * k;
+    float u = (window.x + window.z * x / (float)BLOCKER_WIDTH) * k;
+    float v = (window.y + window.w * (1.0f - y / (float)BLOCKER_HEIGHT)) * k;
     test_v3 p = test_mad(test_of(w->camera.eye_near), test_of(w->camera.right_far), (double)u);
     p = test_mad(p, test_of(w->camera.up), (double)v);
     p = test_mad(p, test_of(w->camera.forward_orthographic), (double)z);
@@ -211,7 +29,7 @@ static int compare_at(const grid* g, const world* w, float x, float y, float z)
     uint32_t at = hdrp_cull_cell(g->lists.grid, tile,
                                  hdrp_cull_slice(g->lists.grid, g->lists.tiles[tile].z, z));
     int wrong = 0;
-    for (uint32_t i = 0; i < LIGHTS; ++i) {
+    for (uint32_t i = 0; i < BLOCKER_LIGHTS; ++i) {
         int before = find(g->old_entries, g->old_cells[at], i);
         int after = find(g->lists.entries, g->lists.cells[at], i);
         bool lit = test_reaches(&w->scene, i, 0xffffffffu, p);
@@ -241,10 +59,10 @@ static void lists_and_masks_decide_as_all_blockers_do(void** state)
         hdrp_cull_blocker_stats stats = apply(&g, 1);
         int wrong = 0;
         for (int q = 0; q < 6000; ++q) {
-            uint32_t x = test_below(&seed, WIDTH), y = test_below(&seed, HEIGHT);
+            uint32_t x = test_below(&seed, BLOCKER_WIDTH), y = test_below(&seed, BLOCKER_HEIGHT);
             float z = (float)test_log(&seed, 0.1, 90.0);
             if (with_depth && (tiles || q % 2)) {
-                z = w.depth[y * WIDTH + x];
+                z = w.depth[y * BLOCKER_WIDTH + x];
             }
             wrong += compare_at(&g, &w, (float)x + 0.5f, (float)y + 0.5f, z);
         }
@@ -282,7 +100,7 @@ static void what_stays_keeps_its_order_and_its_category(void** state)
             uint32_t end = hdrp_cull_last(g.old_cells[c], category);
             before += end - i;
             for (uint32_t k = i; k < end; ++k) {
-                lights += hdrp_cull_entry_index(g.old_entries[k]) < LIGHTS;
+                lights += hdrp_cull_entry_index(g.old_entries[k]) < BLOCKER_LIGHTS;
             }
             for (uint32_t k = hdrp_cull_first(g.lists.cells[c], category);
                  k < hdrp_cull_last(g.lists.cells[c], category); ++k, ++i, ++after) {
@@ -292,7 +110,7 @@ static void what_stays_keeps_its_order_and_its_category(void** state)
                 }
                 assert_true(i < end);
                 uint32_t shape = hdrp_cull_entry_index(g.lists.entries[k]);
-                assert_true(g.masks[k] < 8u && (shape < LIGHTS || g.masks[k] == 0u));
+                assert_true(g.masks[k] < 8u && (shape < BLOCKER_LIGHTS || g.masks[k] == 0u));
             }
         }
     }

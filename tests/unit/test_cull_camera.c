@@ -131,6 +131,34 @@ static void nothing_is_lost_far_from_the_origin(void** state)
     assert_true(p.x < -0.99e18f && p.y > 0.99e18f && p.z > 0.99e18f);
 }
 
+/* Back to the pixel that it was, whatever the camera. */
+static void pixels_are_found_in_the_world(void** state)
+{
+    uint64_t random = 7;
+    (void)state;
+    for (int i = 0; i < 5000; ++i) {
+        dvec f = test_direction(&random);
+        hdrp_v3 forward = v3((float)f.x, (float)f.y, (float)f.z), up = v3(0.1f, 1.0f, 0.2f);
+        bool flat = i % 2 == 1;
+        hdrp_cull_camera c =
+            flat ? hdrp_cull_camera_orthographic(v3(3, 4, 5), forward, up, -7, 9, -2, 5, 0.1f, 100)
+                 : hdrp_cull_camera_perspective(v3(3, 4, 5), forward, up, -0.7f, 0.9f, -0.2f, 0.5f,
+                                                0.1f, 100);
+        float x = 320.0f * (float)(i % 31) / 31.0f, y = 200.0f * (float)(i % 17) / 17.0f;
+        float z = (float)test_log_uniform(&random, 0.1, 100.0);
+        hdrp_v3 offset = hdrp_cull_offset_of_pixel(c, x, y, 320.0f, 200.0f, z);
+        hdrp_v3 p = hdrp_cull_view_from_world(hdrp_v3_add(offset, v3(3, 4, 5)), c);
+        hdrp_v3 v = hdrp_cull_direction_to_eye(c, offset);
+        float scale = flat ? 1.0f : z;
+        assert_true(fabsf(p.z - z) < 2e-6f * (z + 10.0f));
+        assert_true(fabsf((p.x / scale - c.window.x) / c.window.z * 320.0f - x) < 2e-3f);
+        assert_true(fabsf((1.0f - (p.y / scale - c.window.y) / c.window.w) * 200.0f - y) < 2e-3f);
+        assert_true(fabsf(hdrp_v3_length(v) - 1.0f) < 1e-6f);
+        p = flat ? hdrp_v3_from_v4(c.forward_orthographic) : hdrp_v3_normalize(offset);
+        assert_true(hdrp_v3_length(hdrp_v3_add(v, p)) < 1e-6f);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -140,6 +168,7 @@ int main(void)
         cmocka_unit_test(depths_and_eyes_are_limited),
         cmocka_unit_test(windows_may_be_off_centre_and_have_a_width),
         cmocka_unit_test(nothing_is_lost_far_from_the_origin),
+        cmocka_unit_test(pixels_are_found_in_the_world),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -232,6 +232,7 @@ static void entries_hold_an_index_and_blocks(void** state)
                 /* a tile in the middle of the picture: 5 columns and 7 rows before it */
                 assert_int_equal(hdrp_cull_entry_covers(g, entry, 160u + x, 112u + y),
                                  own == block ? 1u : 0u);
+                assert_int_equal(hdrp_cull_entry_bit(g, 160u + x, 112u + y), 1u << (16u + own));
             }
         }
     }
@@ -280,9 +281,32 @@ static void every_bit_is_the_lowest_of_some_words(void** state)
     }
 }
 
+static void slices_meet_a_little_wider_than_they_are(void** state)
+{
+    hdrp_cull_grid g = grid_of(0.5f, 1e5f, 24), one = grid_of(0.5f, 1e5f, 1);
+    hdrp_v4 tile = hdrp_v4_make(2.0f, 70.0f, 0.0f, 0.0f);
+    float last = 0.5f;
+    (void)state;
+    tile.z = hdrp_cull_series_scale(g, 70.0f);
+    for (uint32_t k = 0; k < 24; ++k) {
+        hdrp_cull_interval r = hdrp_cull_slice_depths(g, tile, k, 0.5f, 1e5f);
+        float middle = sqrtf(r.nearest * r.farthest);
+        assert_int_equal(hdrp_cull_slice(g, tile.z, middle), k);
+        assert_true(r.nearest <= last && r.nearest >= last * 0.99995f);
+        assert_true(k == 0 || hdrp_cull_slice(g, tile.z, r.nearest) == k - 1);
+        assert_true(k == 23 ? r.farthest == 1e5f : hdrp_cull_slice(g, tile.z, r.farthest) == k + 1);
+        last = r.farthest;
+    }
+    assert_true(hdrp_cull_slice_begin(g, tile.z, 12) > 69.9f &&
+                hdrp_cull_slice_begin(g, tile.z, 12) < 70.1f); /* half of them are in front */
+    assert_true(hdrp_cull_slice_depths(one, tile, 0, 0.5f, 1e5f).nearest == 2.0f);
+    assert_true(hdrp_cull_slice_depths(one, tile, 0, 0.5f, 1e5f).farthest == 70.0f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(slices_meet_a_little_wider_than_they_are),
         cmocka_unit_test(the_logarithm_is_exact_for_powers_of_two_and_rises),
         cmocka_unit_test(grids_cover_the_picture),
         cmocka_unit_test(sizes_of_grids_are_limited),

@@ -393,6 +393,28 @@ static void the_layout_is_the_documented_one(void** state)
     assert_int_equal(HDRP_LIGHT_LAYOUT_VERSION, 1);
 }
 
+static void sources_are_seen_at_an_angle(void** state)
+{
+    hdrp_light lamp = hdrp_light_point(v3(0, 3, 0), v3(1, 1, 1), 10.0f);
+    hdrp_light sun = hdrp_light_directional(v3(0, -1, 0), v3(1, 1, 1), 0.2f);
+    hdrp_light box =
+        hdrp_light_box(v3(0, 3, 0), v3(0, -1, 0), v3(1, 0, 0), v3(1, 1, 1), 1.0f, 1.0f, 5.0f, 0.1f);
+    hdrp_light_incident i = hdrp_light_eval(lamp, v3(0, 0, 0));
+    float sine;
+    (void)state;
+    assert_true(hdrp_light_sine(lamp, i) == 0.0f && hdrp_light_variance(lamp, i) == 0.0f);
+    lamp.forward_radius.w = 0.5f;
+    sine = hdrp_light_sine(lamp, i);
+    assert_true(fabsf(sine - 0.5f / 3.0f) < 1e-6f);
+    assert_true(fabsf(hdrp_light_variance(lamp, i) - sine * sine / 8.0f) < 1e-8f);
+    i.distance_m = 0.1f; /* inside */
+    assert_true(hdrp_light_sine(lamp, i) == 0.99f);
+    i = hdrp_light_eval(sun, v3(0, 0, 0));
+    assert_true(fabsf(hdrp_light_sine(sun, i) - sinf(0.1f)) < 1e-6f);
+    box.forward_radius.w = 1.0f;
+    assert_true(hdrp_light_sine(box, hdrp_light_eval(box, v3(0, 0, 0))) == 0.0f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -416,6 +438,7 @@ int main(void)
         cmocka_unit_test(each_type_has_a_function_of_its_own),
         cmocka_unit_test(a_record_of_anything_is_sound),
         cmocka_unit_test(the_layout_is_the_documented_one),
+        cmocka_unit_test(sources_are_seen_at_an_angle),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -160,6 +160,72 @@ static void the_published_fit_has_its_misprints_corrected(void** state)
     assert_true(fabs(measured - corrected) < 1e-6);
 }
 
+static void a_display_shows_what_no_light_is_as_black(void** state)
+{
+    hdrp_v3 c;
+    (void)state;
+    for (uint32_t tone = 0; tone < 3; ++tone) {
+        c = hdrp_tonemap(hdrp_v3_make(NAN, -1.0f, -INFINITY), tone);
+        assert_true(c.x == 0.0f && c.y == 0.0f && c.z == 0.0f);
+        c = hdrp_tonemap(hdrp_v3_splat(INFINITY), tone);
+        assert_true(c.x > 0.999f && c.x <= 1.0f && c.y == c.x && c.z == c.x);
+        c = hdrp_tonemap(hdrp_v3_make(INFINITY, 0.0f, NAN), tone);
+        assert_true(c.x > 0.999f && c.x <= 1.0f && c.y >= 0.0f && c.y <= 1.0f && c.z == c.y);
+    }
+    /* Base colours lose the 4 % that a dielectric adds to them, up to the knee. */
+    c = hdrp_tonemap(hdrp_v3_make(0.2f, 0.5f, 0.79f), HDRP_TONEMAP_NEUTRAL);
+    assert_true(fabsf(c.x - 0.16f) < 1e-6f && fabsf(c.y - 0.46f) < 1e-6f);
+    assert_true(fabsf(c.z - 0.75f) < 1e-6f);
+    c = hdrp_tonemap(hdrp_v3_make(0.2f, 0.5f, 1.5f), HDRP_TONEMAP_CLAMP);
+    assert_true(c.x == 0.2f && c.y == 0.5f && c.z == 1.0f);
+}
+
+static void noise_is_triangular_and_has_no_mean(void** state)
+{
+    int near = 0;
+    double sum = 0.0, squares = 0.0;
+    (void)state;
+    for (uint32_t i = 0; i < 100000; ++i) {
+        double n = (double)hdrp_dither_from_hash(hdrp_hash1(i));
+        assert_true(n > -1.0 && n < 1.0);
+        sum += n;
+        squares += n * n;
+        near += fabs(n) < 0.5;
+    }
+    assert_true(fabs(sum / 1e5) < 5e-3 && fabs(squares / 1e5 - 1.0 / 6.0) < 3e-3);
+    assert_true(near > 74000 && near < 76000);
+    assert_true(hdrp_dither_from_hash(0u) == 0.0f && hdrp_dither_from_hash(0xffffffffu) == 0.0f);
+}
+
+static void codes_are_whole_and_keep_the_mean_when_dithered(void** state)
+{
+    (void)state;
+    for (float x = 0.0f; x <= 1.0f; x += 0.0037f) {
+        double sum = 0.0;
+        assert_true(hdrp_dithered(x, 255.0f, 0.0f) * 255.0f ==
+                    floorf(hdrp_dithered(x, 255.0f, 0.0f) * 255.0f + 0.5f));
+        assert_true(fabsf(hdrp_dithered(x, 255.0f, 0.0f) - x) <= 0.5001f / 255.0f);
+        for (uint32_t i = 0; i < 4096; ++i) {
+            float code =
+                hdrp_dithered(x, 255.0f, hdrp_dither_from_hash(hdrp_hash2(i, 7u))) * 255.0f;
+            assert_true(code >= 0.0f && code <= 255.0f);
+            sum += (double)code;
+        }
+        if (x > 1.0f / 255.0f && x < 254.0f / 255.0f) {
+            assert_true(fabs(sum / 4096.0 - (double)x * 255.0) < 0.05);
+        }
+    }
+    assert_true(hdrp_dithered(10.4998f / 255.0f, 255.0f, 0.0f) == 10.0f / 255.0f);
+    assert_true(hdrp_dithered(10.5002f / 255.0f, 255.0f, 0.0f) == 11.0f / 255.0f);
+    for (float noise = -1.0f; noise <= 1.0f; noise += 0.25f) {
+        assert_true(hdrp_dithered(0.0f, 255.0f, noise) == 0.0f);
+        assert_true(hdrp_dithered(1.0f, 255.0f, noise) == 1.0f);
+        assert_true(hdrp_dithered(NAN, 255.0f, noise) == 0.0f);
+        assert_true(hdrp_dithered(INFINITY, 1023.0f, noise) == 1.0f);
+        assert_true(hdrp_dithered(-1.0f, 1.0f, noise) == 0.0f);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -173,6 +239,9 @@ int main(void)
         cmocka_unit_test(the_largest_channel_is_one_and_none_is_negative),
         cmocka_unit_test(only_the_published_fit_steps_at_its_pivot),
         cmocka_unit_test(the_published_fit_has_its_misprints_corrected),
+        cmocka_unit_test(a_display_shows_what_no_light_is_as_black),
+        cmocka_unit_test(noise_is_triangular_and_has_no_mean),
+        cmocka_unit_test(codes_are_whole_and_keep_the_mean_when_dithered),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -499,6 +499,24 @@ static void neutral_values_are_exact(void** state)
     assert_true(m.features == 0u && m.normal.z == 1.0f && m.diffuse_color.x == 0.0f);
 }
 
+/* A mask that has all features of a texel changes nothing; one that lacks some has none of them. */
+static void a_mask_of_features_is_for_the_compiler(void** state)
+{
+    (void)state;
+    for (int i = 0; i < 20000; ++i) {
+        hdrp_pack_gbuffer_texel t =
+            texel_of(random_material(random_bits() & 31u), random_extra(BOTH));
+        hdrp_pack_gbuffer g = hdrp_pack_gbuffer_targets_from_texel(t);
+        hdrp_brdf_data all = hdrp_pack_gbuffer_decode(g, BOTH), d;
+        hdrp_u32 mask = random_bits() & 31u;
+        d = hdrp_pack_gbuffer_decode_features(g, BOTH, all.features | mask);
+        assert_memory_equal(&d, &all, sizeof d);
+        d = hdrp_pack_gbuffer_decode_features(g, BOTH, mask);
+        assert_int_equal(d.features, all.features & mask);
+        expect_valid(d);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -517,6 +535,7 @@ int main(void)
         cmocka_unit_test(forward_passes_write_the_same_buffers),
         cmocka_unit_test(a_mask_without_subsurface_scattering_is_not_stored),
         cmocka_unit_test(neutral_values_are_exact),
+        cmocka_unit_test(a_mask_of_features_is_for_the_compiler),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -13,6 +13,8 @@
 #define HDRP_SHADOW_IMPLEMENTATION
 #include "hdrp_shadow.h"
 
+#include "../shadow_scene.h"
+
 #define ATLAS 256
 
 static uint64_t random_state = 1;
@@ -37,114 +39,12 @@ static hdrp_v3 direction(void)
     return hdrp_v3_normalize(d);
 }
 
-/* ---- an atlas that is drawn by tracing rays -------------------------------------------------- */
-
-/* A plane n . p = distance; a ball where radius is above 0 casts too. Sides do not matter. */
-typedef struct scene {
-    hdrp_v3 n;
-    float distance;
-    hdrp_v3 center;
-    float radius;
-} scene;
-
 static float texels[ATLAS * ATLAS];
 static const hdrp_shadow_atlas atlas = {texels, ATLAS, ATLAS, 0};
 
-static double dot(hdrp_v3 a, const double b[3])
-{
-    return (double)a.x * b[0] + (double)a.y * b[1] + (double)a.z * b[2];
-}
-
-/* Where the line a + t d meets the scene first for t of at least 0; negative: nowhere. */
-static double trace(const scene* s, const double a[3], const double d[3])
-{
-    double best = -1.0, slope = dot(s->n, d);
-    double t = slope != 0.0 ? ((double)s->distance - dot(s->n, a)) / slope : -1.0;
-    best = t >= 0.0 ? t : -1.0;
-    if (s->radius > 0.0f) {
-        double to[3] = {a[0] - (double)s->center.x, a[1] - (double)s->center.y,
-                        a[2] - (double)s->center.z};
-        double dd = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-        double b = (to[0] * d[0] + to[1] * d[1] + to[2] * d[2]) / dd;
-        double c = (to[0] * to[0] + to[1] * to[1] + to[2] * to[2] -
-                    (double)s->radius * (double)s->radius) /
-                   dd;
-        double h = b * b - c;
-        t = h >= 0.0 ? -b - sqrt(h) : -1.0;
-        best = t >= 0.0 && (best < 0.0 || t < best) ? t : best;
-    }
-    return best;
-}
-
-static void row_of(hdrp_v4 row, double out[4])
-{
-    out[0] = (double)row.x;
-    out[1] = (double)row.y;
-    out[2] = (double)row.z;
-    out[3] = (double)row.w;
-}
-
-/* Position whose clip coordinates are x w, y w, z w: the projection is inverted by Cramer's rule. */
-static bool unproject(const hdrp_shadow_view* v, double x, double y, double z, double p[3])
-{
-    double r[4][4], m[3][3], b[3], det = 0.0;
-    const double value[3] = {x, y, z};
-    row_of(v->clip_x, r[0]);
-    row_of(v->clip_y, r[1]);
-    row_of(v->clip_z, r[2]);
-    row_of(v->clip_w, r[3]);
-    for (int i = 0; i < 3; ++i) {
-        for (int k = 0; k < 3; ++k) {
-            m[i][k] = r[i][k] - value[i] * r[3][k];
-        }
-        b[i] = value[i] * r[3][3] - r[i][3];
-    }
-    det = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-          m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-          m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
-    for (int k = 0; k < 3; ++k) {
-        int i = (k + 1) % 3, l = (k + 2) % 3;
-        /* column k replaced by b */
-        p[k] = (b[0] * (m[1][i] * m[2][l] - m[1][l] * m[2][i]) -
-                b[1] * (m[0][i] * m[2][l] - m[0][l] * m[2][i]) +
-                b[2] * (m[0][i] * m[1][l] - m[0][l] * m[1][i])) /
-               det;
-    }
-    return det != 0.0;
-}
-
-static double clip(hdrp_v4 row, const double p[3])
-{
-    double r[4];
-    row_of(row, r);
-    return r[0] * p[0] + r[1] * p[1] + r[2] * p[2] + r[3];
-}
-
-/* The depth at the centre of every texel of a view, as a rasteriser that does not round has it. */
 static void draw(const hdrp_shadow_view* v, const scene* s)
 {
-    bool reverse = v->bias.w < 0.0f;
-    for (int y = (int)v->limits.y; y <= (int)v->limits.w; ++y) {
-        for (int x = (int)v->limits.x; x <= (int)v->limits.z; ++x) {
-            double at_x = ((double)x + 0.5 - (double)v->place.z) / (double)v->place.x;
-            double at_y = ((double)y + 0.5 - (double)v->place.w) / (double)v->place.y;
-            double a[3], b[3], p[3], d[3], t, depth = reverse ? 0.0 : 1.0;
-            assert_true(unproject(v, at_x, at_y, reverse ? 1.0 : 0.0, a));
-            assert_true(unproject(v, at_x, at_y, 0.5, b));
-            for (int k = 0; k < 3; ++k) {
-                d[k] = b[k] - a[k];
-            }
-            t = trace(s, a, d);
-            if (t >= 0.0) {
-                for (int k = 0; k < 3; ++k) {
-                    p[k] = a[k] + t * d[k];
-                }
-                depth = clip(v->clip_z, p) / clip(v->clip_w, p);
-                depth = depth < 0.0 ? 0.0 : depth > 1.0 ? 1.0 : depth;
-            }
-            texels[y * ATLAS + x] = (float)depth;
-        }
-    }
+    scene_draw(v, s, texels, ATLAS);
 }
 
 static hdrp_u32x4 square(uint32_t x, uint32_t y, uint32_t size)
@@ -415,7 +315,16 @@ static hdrp_shadow_settings settings_of(int i)
 {
     hdrp_shadow_settings s = hdrp_shadow_settings_make((hdrp_u32)(i & 3), (hdrp_u32)(i >> 2 & 1));
     s.slope_max = (i >> 3 & 1) ? 2.0f : 0.0f;
+    s.depth_step = (i >> 4 & 1) ? 1.0f / 65535.0f : 0.0f;
     return s;
+}
+
+/* What a format of 16 bits keeps. */
+static void round_texels(float step)
+{
+    for (size_t i = 0; step > 0.0f && i < sizeof texels / sizeof texels[0]; ++i) {
+        texels[i] = floorf(texels[i] / step + 0.5f) * step;
+    }
 }
 
 /* A plane that faces the light, by a cosine. */
@@ -449,6 +358,7 @@ static void planes_in_parallel_light_have_no_acne(void** state)
         hdrp_v3 center = hdrp_v3_from_v4(v.ball);
         plane.distance = hdrp_v3_dot(plane.n, center);
         draw(&v, &plane);
+        round_texels(s.depth_step);
         for (int k = 0; k < 200; ++k) {
             hdrp_v3 p = hdrp_v3_mad(center, b.tangent, uniform(-6.0f, 6.0f));
             float seen;
@@ -475,6 +385,7 @@ static void planes_in_light_from_a_point_have_no_acne(void** state)
         scene plane = {tilted(light, cosine), 0.0f, {0.0f, 0.0f, 0.0f}, 0.0f};
         hdrp_basis b = hdrp_basis_from_normal(plane.n);
         draw(&v, &plane);
+        round_texels(s.depth_step);
         for (int k = 0; k < 200; ++k) {
             hdrp_v3 p = hdrp_v3_scale(b.tangent, uniform(-6.0f, 6.0f));
             float seen;
