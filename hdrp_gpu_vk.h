@@ -208,6 +208,16 @@ static void hdrp_i_gpu_vk_check_limits(hdrp_i_gpu_vk_missing* missing,
     hdrp_i_gpu_vk_need(
         missing, limits->maxPerStageDescriptorStorageImages >= hdrp_i_gpu_vk_most(passes, "s"),
         "maxPerStageDescriptorStorageImages");
+    if (passes & HDRP_GPU_VK_PASS_LIGHT) { /* shaders/deferred.comp and dispatch.comp */
+        hdrp_i_gpu_vk_need(missing, limits->maxComputeWorkGroupSize[0] >= 256u,
+                           "maxComputeWorkGroupSize");
+        hdrp_i_gpu_vk_need(missing, limits->maxComputeWorkGroupInvocations >= 256u,
+                           "maxComputeWorkGroupInvocations");
+    }
+    if (passes & HDRP_GPU_VK_PASS_ENVIRONMENT) { /* shaders/env_harmonics.comp */
+        hdrp_i_gpu_vk_need(missing, limits->maxComputeSharedMemorySize >= 18432u,
+                           "maxComputeSharedMemorySize");
+    }
 }
 
 /* Loads the functions, and asks for everything that passes need. */
