@@ -393,6 +393,7 @@ HDRP_API hdrp_result hdrp_gpu_vk_init(hdrp_gpu_vk* gpu, const hdrp_gpu_vk_desc* 
     made.vk.GetPhysicalDeviceProperties(desc->physical_device, &properties);
     made.buffer_range_max = properties.limits.maxStorageBufferRange;
     made.buffer_alignment = properties.limits.minStorageBufferOffsetAlignment;
+    made.groups_max = properties.limits.maxComputeWorkGroupCount[0];
     made.vk.GetPhysicalDeviceMemoryProperties(desc->physical_device, &made.memory_types);
     hdrp_i_gpu_vk_choose_group(&made);
     made.shader_stages = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;

@@ -145,6 +145,7 @@ typedef struct hdrp_gpu_vk {
     hdrp_gpu_vk_functions vk;
     VkPhysicalDeviceMemoryProperties memory_types;
     VkDeviceSize buffer_range_max, buffer_alignment; /* limits of storage buffers */
+    uint32_t groups_max;                             /* of a dispatch, side by side */
     VkPipelineStageFlags shader_stages;              /* compute and, where there are, fragment */
     uint32_t group;                                  /* threads of the groups that build lists */
     uint32_t one_subgroup; /* 1 where they run in step, and need no barriers */

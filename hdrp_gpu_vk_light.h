@@ -264,7 +264,9 @@ typedef struct hdrp_gpu_vk_tiles {
  *  grid     of the lists
  *  tiles    result; to be destroyed by hdrp_gpu_vk_tiles_destroy
  *  returns  HDRP_OK, or an error, with tiles untouched and nothing left on the device
- *  errors   those of hdrp_gpu_vk_buffer_create, HDRP_ERROR_BAD_ARGUMENT for a grid that is none
+ *  errors   those of hdrp_gpu_vk_buffer_create, HDRP_ERROR_BAD_ARGUMENT for a grid that is none,
+ *           HDRP_ERROR_TOO_LARGE for more tiles than the limit maxComputeWorkGroupCount, of which
+ *           some devices have 65535: one dispatch may have to light them all
  *  memory   from desc.memory; 12 bytes for each tile */
 HDRP_API hdrp_result hdrp_gpu_vk_tiles_create(const hdrp_gpu_vk* gpu, hdrp_cull_grid grid,
                                               hdrp_gpu_vk_tiles* tiles);
@@ -556,7 +558,7 @@ HDRP_API hdrp_result hdrp_gpu_vk_variants_create(const hdrp_gpu_vk* gpu, const u
 HDRP_API void hdrp_gpu_vk_variants_destroy(const hdrp_gpu_vk* gpu, hdrp_gpu_vk_variants* variants)
 {
     uint32_t i;
-    if (!gpu || !variants) {
+    if (!gpu || !variants || variants->nothing == VK_NULL_HANDLE) {
         return;
     }
     for (i = 0u; i < variants->count; ++i) {
@@ -621,6 +623,9 @@ HDRP_API hdrp_result hdrp_gpu_vk_tiles_create(const hdrp_gpu_vk* gpu, hdrp_cull_
     made.tiles_x = grid.tiles.z;
     made.tiles_y = grid.tiles.w;
     count = made.tiles_x * made.tiles_y;
+    if (count > gpu->groups_max) {
+        return HDRP_ERROR_TOO_LARGE;
+    }
     r = hdrp_i_gpu_vk_tile_buffer(gpu, count, 0u, "hdrp tile words", &made.words);
     if (r == HDRP_OK) {
         r = hdrp_i_gpu_vk_tile_buffer(gpu, count, 0u, "hdrp tile variants", &made.chosen);

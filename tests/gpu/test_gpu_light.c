@@ -1177,6 +1177,7 @@ static void what_cannot_be_lit_is_refused(void** state)
     const scene_desc desc = {.width = 32, .height = 16, .tile = 16, .lights = 2, .plain = true};
     const uint32_t words[] = {HDRP_GPU_VK_WORD_LIT, HDRP_GPU_VK_WORD_LIT};
     hdrp_gpu_vk_variants v = make_variants(words, 2), other;
+    hdrp_gpu_vk small = gpu;
     hdrp_gpu_vk_tiles tiles;
     hdrp_cull_grid grid;
     scene s = make_scene(&desc);
@@ -1198,6 +1199,11 @@ static void what_cannot_be_lit_is_refused(void** state)
     assert_int_equal(hdrp_gpu_vk_tiles_create(&gpu, grid, &tiles), HDRP_ERROR_BAD_ARGUMENT);
     assert_int_equal(hdrp_gpu_vk_tiles_create(NULL, grid, &tiles), HDRP_ERROR_NULL_POINTER);
     assert_int_equal(hdrp_gpu_vk_tiles_create(&gpu, grid, NULL), HDRP_ERROR_NULL_POINTER);
+    small.groups_max = s.lists.grid.tiles.z * s.lists.grid.tiles.w - 1u; /* groups of a dispatch */
+    assert_int_equal(hdrp_gpu_vk_tiles_create(&small, s.lists.grid, &tiles), HDRP_ERROR_TOO_LARGE);
+    ++small.groups_max;
+    assert_int_equal(hdrp_gpu_vk_tiles_create(&small, s.lists.grid, &tiles), HDRP_OK);
+    hdrp_gpu_vk_tiles_destroy(&gpu, &tiles);
     hdrp_gpu_vk_variants_destroy(&gpu, NULL);
     hdrp_gpu_vk_tiles_destroy(&gpu, NULL);
     free_device(&o);
@@ -1205,6 +1211,8 @@ static void what_cannot_be_lit_is_refused(void** state)
     hdrp_gpu_vk_variants_destroy(&gpu, &v);
     assert_int_equal(v.count, 0);
     hdrp_gpu_vk_variants_destroy(&gpu, &v);
+    memset(&small, 0, sizeof small);
+    hdrp_gpu_vk_variants_destroy(&small, &v); /* a context that was destroyed before */
 }
 
 /* A context without the pass has no variants, and records nothing. */
