@@ -195,7 +195,8 @@ bool rd_vk_shadow_make(rd_vk_shadow* s, rd_vk_device* d, const rd_renderer* r, h
     hdrp_shadow_request* requests = (hdrp_shadow_request*)calloc(most, sizeof *requests);
     uint32_t* lights = (uint32_t*)calloc(most, sizeof *lights);
     uint32_t count = 0;
-    bool on = (r->options->features & RD_FEATURE_SHADOWS) != 0, ok = true;
+    bool casts = r->scene->bounds.low.x <= r->scene->bounds.high.x; /* else the scene is empty */
+    bool on = (r->options->features & RD_FEATURE_SHADOWS) != 0 && casts, ok = true;
     memset(s, 0, sizeof *s);
     if (!requests || !lights) {
         ok = rd_fail(d->report, "--backend vulkan", "out of memory");
