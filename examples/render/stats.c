@@ -41,6 +41,15 @@ void rd_stats_pass(rd_stats* s, const char* name, double ms)
     add(s->passes, &s->pass_count, name, ms);
 }
 
+double rd_stats_passes_ms(const rd_stats* s)
+{
+    double sum = 0.0;
+    for (int i = 0; i < s->pass_count; ++i) {
+        sum += s->passes[i].value;
+    }
+    return sum;
+}
+
 void rd_stats_count(rd_stats* s, const char* name, double n)
 {
     add(s->counts, &s->count_count, name, n);

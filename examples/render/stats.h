@@ -35,6 +35,7 @@ typedef struct rd_stats {
 double rd_now_ms(void);
 void rd_stats_begin(rd_stats* s);
 void rd_stats_pass(rd_stats* s, const char* name, double ms);
+double rd_stats_passes_ms(const rd_stats* s); /* of all that there are */
 void rd_stats_count(rd_stats* s, const char* name, double n);
 void rd_stats_limit(rd_stats* s, const char* name, double n);
 void rd_stats_error(rd_stats* s, const char* name, double value);

@@ -151,6 +151,24 @@ def is_the_same_on_any_number_of_threads(exe):
     return render_test.in_folder(check)
 
 
+def draws_an_empty_scene_by_vulkan(exe):
+    def check(folder):
+        with open(os.path.join(folder, "empty.gltf"), "w") as f:
+            json.dump({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{}]}, f)
+        code, _, errors = run_in(exe, folder, [
+            "empty.gltf", "--backend", "vulkan", "--size", "3x2", "--spp", "1", "--out", "a.exr",
+            "--stats", "a.json"])
+        if code != 0:
+            missing = any("there is no" in line for line in errors)  # driver or device
+            return None if missing else f"exit status {code}: {errors}"
+        with open(os.path.join(folder, "a.json")) as f:
+            stats = json.load(f)
+        total, passes = stats["total_ms"], sum(stats["passes_ms"].values())
+        return None if passes <= total else f"passes take {passes} ms of {total}"
+
+    return render_test.in_folder(check)
+
+
 def main():
     exe = os.path.abspath(sys.argv[1])
     tally = render_test.Tally()
@@ -159,7 +177,8 @@ def main():
     tally.check("--help", says_on_stdout(exe, "--help", "--features"))
     tally.check("--version", says_on_stdout(exe, "--version", "hdrp_render "))
     for check in (writes_what_it_promises, finds_no_difference_to_itself, numbers_its_frames,
-                  keeps_an_old_picture_when_it_fails, is_the_same_on_any_number_of_threads):
+                  keeps_an_old_picture_when_it_fails, is_the_same_on_any_number_of_threads,
+                  draws_an_empty_scene_by_vulkan):
         tally.check(check.__name__, check(exe))
     tally.finish()
 
