@@ -250,12 +250,40 @@ static VkResult hdrp_i_gpu_vk_sampler(hdrp_gpu_vk* gpu)
     return gpu->vk.CreateSampler(gpu->desc.device, &info, gpu->desc.allocation, &gpu->linear);
 }
 
+/* Threads of a group: a subgroup, where all subgroups have one size, so that it runs in step. */
+static void hdrp_i_gpu_vk_choose_group(hdrp_gpu_vk* gpu)
+{
+    VkPhysicalDeviceSubgroupSizeControlPropertiesEXT sizes;
+    VkPhysicalDeviceProperties2 all;
+    memset(&sizes, 0, sizeof sizes);
+    sizes.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_SIZE_CONTROL_PROPERTIES_EXT;
+    memset(&all, 0, sizeof all);
+    all.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+    all.pNext = &sizes;
+    gpu->vk.GetPhysicalDeviceProperties2(gpu->desc.physical_device, &all);
+    gpu->group = HDRP_I_GPU_VK_GROUP_MAX;
+    gpu->one_subgroup = 0u;
+    if (sizes.minSubgroupSize == sizes.maxSubgroupSize && sizes.minSubgroupSize >= 4u &&
+        sizes.minSubgroupSize <= HDRP_I_GPU_VK_GROUP_MAX) {
+        gpu->group = sizes.minSubgroupSize;
+        gpu->one_subgroup = 1u;
+    }
+}
+
 /* The shaders of the passes that are asked for, of one of the headers. */
 static VkResult hdrp_i_gpu_vk_make_shaders(hdrp_gpu_vk* gpu,
                                            hdrp_i_gpu_vk_shader (*shader_of)(uint32_t))
 {
+    const VkSpecializationMapEntry entries[2] = {
+        {0u, (uint32_t)offsetof(hdrp_gpu_vk, group), sizeof gpu->group},
+        {1u, (uint32_t)offsetof(hdrp_gpu_vk, one_subgroup), sizeof gpu->one_subgroup}};
+    VkSpecializationInfo constants; /* of shaders/group.glsl; others have none by these numbers */
     VkResult r = VK_SUCCESS;
     uint32_t i;
+    constants.mapEntryCount = 2u;
+    constants.pMapEntries = entries;
+    constants.dataSize = sizeof *gpu;
+    constants.pData = gpu;
     for (i = 0u; shader_of(i).name && r == VK_SUCCESS; ++i) {
         hdrp_i_gpu_vk_shader shader = shader_of(i);
         hdrp_gpu_vk_pipeline* made = &gpu->pipelines[shader.index];
@@ -264,7 +292,7 @@ static VkResult hdrp_i_gpu_vk_make_shaders(hdrp_gpu_vk* gpu,
         }
         r = hdrp_i_gpu_vk_layouts(gpu, &shader, made);
         if (r == VK_SUCCESS && shader.has_variants == 0u) {
-            r = hdrp_i_gpu_vk_specialise(gpu, &shader, made->layout, NULL, &made->pipeline);
+            r = hdrp_i_gpu_vk_specialise(gpu, &shader, made->layout, &constants, &made->pipeline);
         }
     }
     return r;
@@ -318,6 +346,7 @@ HDRP_API hdrp_result hdrp_gpu_vk_init(hdrp_gpu_vk* gpu, const hdrp_gpu_vk_desc* 
     made.buffer_range_max = properties.limits.maxStorageBufferRange;
     made.buffer_alignment = properties.limits.minStorageBufferOffsetAlignment;
     made.vk.GetPhysicalDeviceMemoryProperties(desc->physical_device, &made.memory_types);
+    hdrp_i_gpu_vk_choose_group(&made);
     made.shader_stages = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;
     if (hdrp_i_gpu_vk_queue_flags(&made.vk, desc) & VK_QUEUE_GRAPHICS_BIT) {
         made.shader_stages |= VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT;

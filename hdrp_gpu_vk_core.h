@@ -121,6 +121,7 @@ typedef struct hdrp_gpu_vk_desc {
     X(GetPhysicalDeviceFormatProperties)                                                           \
     X(GetPhysicalDeviceMemoryProperties)                                                           \
     X(GetPhysicalDeviceProperties)                                                                 \
+    X(GetPhysicalDeviceProperties2)                                                                \
     X(GetPhysicalDeviceQueueFamilyProperties)
 
 #define HDRP_GPU_VK_MEMBER(name) PFN_vk##name name;
@@ -145,7 +146,9 @@ typedef struct hdrp_gpu_vk {
     VkPhysicalDeviceMemoryProperties memory_types;
     VkDeviceSize buffer_range_max, buffer_alignment; /* limits of storage buffers */
     VkPipelineStageFlags shader_stages;              /* compute and, where there are, fragment */
-    VkSampler linear; /* linear within a level and between levels, clamped to the edge */
+    uint32_t group;                                  /* threads of the groups that build lists */
+    uint32_t one_subgroup; /* 1 where they run in step, and need no barriers */
+    VkSampler linear;      /* linear within a level and between levels, clamped to the edge */
     hdrp_gpu_vk_pipeline pipelines[HDRP_GPU_VK_SHADERS_MAX]; /* by hdrp_i_gpu_vk_shader.index */
     VkDescriptorPool pools[HDRP_GPU_VK_FRAMES_MAX];
     uint32_t frame, passes_recorded; /* the frame that is recorded, and sets taken in it */
@@ -271,6 +274,7 @@ extern "C" {
 /* ---- what a pass is made of ------------------------------------------------------------------ */
 
 #define HDRP_I_GPU_VK_BINDINGS_MAX 24u
+#define HDRP_I_GPU_VK_GROUP_MAX    64u /* threads, of shaders/group.glsl */
 
 /* Places in hdrp_gpu_vk.pipelines. */
 #define HDRP_I_GPU_VK_FGD              0u

@@ -7,11 +7,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "hdrp_gpu_vk_light.h"
+#include "group.glsl"
 
-#define WIDTH  8
-#define HEIGHT 8
-
-layout(local_size_x = WIDTH, local_size_y = HEIGHT) in;
 layout(std140, binding = 0) uniform HdrpLighting { hdrp_gpu_vk_lighting_params lighting; };
 layout(std430, binding = 1) readonly buffer HdrpLights { hdrp_light lights[]; };
 layout(std430, binding = 2) readonly buffer HdrpCells { uvec4 cells[]; };
@@ -33,9 +30,12 @@ shared uint listed;
 uint material_word(uvec2 begin, uvec2 end)
 {
     uint split = lighting.lights.w & HDRP_GPU_VK_WORD_SPLIT;
+    uint across = min(end.x - begin.x, GROUP);
+    uint rows = GROUP / across;
+    uvec2 own = uvec2(gl_LocalInvocationIndex % across, gl_LocalInvocationIndex / across);
     uint word = 0u;
-    for (uint y = begin.y + gl_LocalInvocationID.y; y < end.y; y += HEIGHT) {
-        for (uint x = begin.x + gl_LocalInvocationID.x; x < end.x; x += WIDTH) {
+    for (uint y = begin.y + own.y; own.y < rows && y < end.y; y += rows) {
+        for (uint x = begin.x + own.x; x < end.x; x += across) {
             if (lit_depth(uvec2(x, y)) >= 0.0) {
                 vec4 texel = texelFetch(rt2, ivec2(x, y), 0);
                 word |= hdrp_gpu_vk_word_of_material(hdrp_pack_gbuffer_features(texel), split);
@@ -53,7 +53,7 @@ uint light_word(uint tile)
         uvec4 cell = cells[hdrp_cull_cell(lighting.grid, tile, slice)];
         uint last = hdrp_cull_last(cell, HDRP_CULL_CATEGORY_PUNCTUAL);
         uint first = hdrp_cull_first(cell, HDRP_CULL_CATEGORY_PUNCTUAL);
-        for (uint k = first + gl_LocalInvocationIndex; k < last; k += WIDTH * HEIGHT) {
+        for (uint k = first + gl_LocalInvocationIndex; k < last; k += GROUP) {
             word |= hdrp_gpu_vk_word_of_light(lights[hdrp_cull_entry_index(entries[k])].bits.x);
         }
     }
@@ -70,13 +70,13 @@ void main()
         materials = 0u;
         listed = 0u;
     }
-    barrier();
+    wait_for_group();
     atomicOr(materials, material_word(begin, end));
-    barrier();
+    wait_for_group();
     if (materials != 0u) {
         atomicOr(listed, light_word(tile));
     }
-    barrier();
+    wait_for_group();
     if (gl_LocalInvocationIndex == 0u) {
         uint needed = hdrp_gpu_vk_word_of_tile(materials, listed, lighting.lights.w);
         uint found = HDRP_CULL_VARIANT_NONE;

@@ -11,7 +11,6 @@
 #include "cull_lists.glsl"
 #include "hdrp_cull_blocker.h"
 
-layout(local_size_x = GROUP) in;
 layout(std430, binding = 1) readonly buffer Places { vec4 places[]; };
 layout(std430, binding = 2) readonly buffer Blockers { hdrp_cull_blocker blockers[]; };
 layout(std430, binding = 3) readonly buffer LightLinks { uvec2 light_links[]; };

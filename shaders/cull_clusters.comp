@@ -9,15 +9,13 @@
 #define FILLS_LISTS
 #include "cull_lists.glsl"
 
-#define BATCH     1024
-#define OF_THREAD 4 // slices, at most: HDRP_CULL_SLICES_MAX / GROUP
+#define BATCH 1024
 
-layout(local_size_x = GROUP) in;
 
 shared uint hits[BATCH]; // candidate of the batch | category << 10 | first slice << 12 | last << 20
 shared uint needed;      // entries of all hits
 shared uint dropped;
-shared uint scan[GROUP];
+shared uint scan[GROUP_MAX];
 // Of each slice the counts of the four categories, 16 bits each; then in x where its next entry goes.
 shared uvec2 counts[HDRP_CULL_SLICES_MAX];
 
@@ -67,7 +65,7 @@ uint collect(uint batch, bool limited)
         }
         n += total;
     }
-    barrier();
+    wait_for_group();
     return n;
 }
 
@@ -123,9 +121,15 @@ uint sum_of(uvec2 counts)
     return (counts.x & 0xffffu) + (counts.x >> 16) + (counts.y & 0xffffu) + (counts.y >> 16);
 }
 
-bool is_in(uint slice, uint end, uint hit)
+// The slices of a thread that a hit reaches.
+uint begin_in(uint first, uint hit)
 {
-    return slice < end && slice >= (hit >> 12 & 255u) && slice <= hit >> 20;
+    return max(first, hit >> 12 & 255u);
+}
+
+uint end_in(uint end, uint hit)
+{
+    return min(end, 1u + (hit >> 20));
 }
 
 void count_slices(uint n)
@@ -134,10 +138,8 @@ void count_slices(uint n)
     uint end = end_slice();
     for (uint h = 0u; h < n; ++h) {
         uint hit = hits[h];
-        for (uint j = 0u; j < OF_THREAD; ++j) {
-            if (is_in(first + j, end, hit)) {
-                counts[first + j] = one_more(counts[first + j], hit >> 10 & 3u);
-            }
+        for (uint k = begin_in(first, hit); k < end_in(end, hit); ++k) {
+            counts[k] = one_more(counts[k], hit >> 10 & 3u);
         }
     }
 }
@@ -147,12 +149,12 @@ uint place_of_thread(uint own)
 {
     uint thread = gl_LocalInvocationIndex;
     scan[thread] = own;
-    barrier();
+    wait_for_group();
     for (uint step = 1u; step < GROUP; step <<= 1) {
         uint before = thread >= step ? scan[thread - step] : 0u;
-        barrier();
+        wait_for_group();
         scan[thread] += before;
-        barrier();
+        wait_for_group();
     }
     return scan[thread] - own;
 }
@@ -163,10 +165,8 @@ void write_entries(uint batch, uint n)
     uint end = end_slice();
     for (uint h = 0u; h < n; ++h) {
         uint hit = hits[h];
-        for (uint j = 0u; j < OF_THREAD; ++j) {
-            if (is_in(first + j, end, hit)) {
-                entries[counts[first + j].x++] = candidate_of(batch, hit) | 0xffff0000u;
-            }
+        for (uint k = begin_in(first, hit); k < end_in(end, hit); ++k) {
+            entries[counts[k].x++] = candidate_of(batch, hit) | 0xffff0000u;
         }
     }
 }
@@ -216,7 +216,7 @@ void main()
         counts[k] = uvec2(0u);
     }
     begin_room();
-    barrier();
+    wait_for_group();
     for (int phase = PHASE_MEASURE; phase <= PHASE_WRITE; ++phase) {
         if (phase == PHASE_LEVEL) {
             limited = needed > frame.grid.cells.y;
@@ -233,7 +233,7 @@ void main()
         if (phase == PHASE_COUNT && gl_LocalInvocationIndex == 0u) {
             dropped = 0u;
         }
-        barrier();
+        wait_for_group();
         for (uint b = 0u; b < batches; ++b) {
             if (is_new) {
                 n = collect(b, limited && phase >= PHASE_COUNT);
@@ -247,7 +247,7 @@ void main()
             } else {
                 write_entries(b, n);
             }
-            barrier();
+            wait_for_group();
         }
         if (level) {
             end_level(phase - PHASE_LEVEL);

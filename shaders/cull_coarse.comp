@@ -8,7 +8,6 @@
 #define SHAPE_ACCESS readonly
 #include "cull_lists.glsl"
 
-layout(local_size_x = GROUP) in;
 layout(std430, binding = 4) writeonly buffer Coarse { uint coarse[]; };
 layout(std430, binding = 5) readonly buffer Tiles { vec4 tiles[]; };
 
@@ -22,7 +21,7 @@ void measure(uvec2 first, uvec2 count)
         nearest_bits = hdrp_bits_from_f32(HDRP_FLT_MAX);
         farthest_bits = 0u;
     }
-    barrier();
+    wait_for_group();
     for (uint k = gl_LocalInvocationIndex; k < count.x * count.y; k += GROUP) {
         uvec2 at = first + uvec2(k % count.x, k / count.x);
         if (at.x < frame.grid.tiles.z && at.y < frame.grid.tiles.w) {
@@ -33,7 +32,7 @@ void measure(uvec2 first, uvec2 count)
             }
         }
     }
-    barrier();
+    wait_for_group();
 }
 
 void main()

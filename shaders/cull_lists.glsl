@@ -3,8 +3,8 @@
 // find something learn their places, so that lists keep the order of categories and indices.
 #include "hdrp_cull_grid.h"
 #include "hdrp_cull_tile.h"
+#include "group.glsl"
 
-#define GROUP         64
 #define GROUPS_ACROSS 65535 // in a row of a dispatch of many threads
 #define PLANES_STRIDE 12
 #define FLAG_FAST     1u
@@ -65,15 +65,15 @@ shared uint found_bits[2];
 uint place_among(bool found, out uint total)
 {
     uint thread = gl_LocalInvocationIndex;
-    barrier();
+    wait_for_group();
     if (thread < 2u) {
         found_bits[thread] = 0u;
     }
-    barrier();
+    wait_for_group();
     if (found) {
         atomicOr(found_bits[thread >> 5], 1u << (thread & 31u));
     }
-    barrier();
+    wait_for_group();
     uint low = uint(bitCount(found_bits[0]));
     total = low + uint(bitCount(found_bits[1]));
     uint before = found_bits[thread >> 5] & ((1u << (thread & 31u)) - 1u);
@@ -182,7 +182,7 @@ bool is_kept(uint order, uint index)
 
 void begin_room()
 {
-    barrier();
+    wait_for_group();
     if (gl_LocalInvocationIndex == 0u) {
         end_key[0] = end_key[1] = 0u;
         room = frame.grid.cells.y;
@@ -191,17 +191,17 @@ void begin_room()
 
 void begin_level()
 {
-    barrier();
+    wait_for_group();
     for (uint i = gl_LocalInvocationIndex; i < DIGIT_COUNT; i += GROUP) {
         sums[i] = 0u;
     }
-    barrier();
+    wait_for_group();
 }
 
 // Walks the digits of a level as long as their shapes fit.
 void end_level(int level)
 {
-    barrier();
+    wait_for_group();
     if (gl_LocalInvocationIndex == 0u) {
         uint digit = 0u;
         while (digit < DIGIT_COUNT - 1 && sums[digit] <= room) {
@@ -210,7 +210,7 @@ void end_level(int level)
         }
         end_key[level / 4] |= digit << (level < 4 ? 24 - 8 * level : 8 - 8 * (level - 4));
     }
-    barrier();
+    wait_for_group();
 }
 
 #endif

@@ -6,9 +6,9 @@
 layout(binding = 10) uniform texture2D depths;
 
 shared float pixel_z[PIXELS_MAX]; // block by block, each row by row; negative: sky
-shared vec2 block_depths[HDRP_CULL_BLOCK_COUNT];
-shared uint undecided[GROUP];     // blocks of each hit whose pixels are to be asked
-shared uint mask_words[GROUP * MASK_WORDS_MAX];
+shared hdrp_cull_box block_boxes[HDRP_CULL_BLOCK_COUNT];
+shared uint undecided[GROUP_MAX];     // blocks of each hit whose pixels are to be asked
+shared uint mask_words[GROUP_MAX * MASK_WORDS_MAX];
 shared uint is_read;
 
 uvec2 tile_begin;
@@ -18,13 +18,20 @@ uint pixels_of_block()
     return frame.grid.cells.z * frame.grid.cells.w;
 }
 
+// A quotient of whole numbers of up to 1024, which devices without integer division make faster so.
+uint quotient(uint a, uint b)
+{
+    return uint((float(a) + 0.5) * (1.0 / float(b)));
+}
+
 // Where the pixel at a place of pixel_z is in its tile.
 uvec2 pixel_at(uint place)
 {
-    uint block = place / pixels_of_block();
-    uint rest = place % pixels_of_block();
-    return uvec2((block & 3u) * frame.grid.cells.z + rest % frame.grid.cells.z,
-                 (block >> 2) * frame.grid.cells.w + rest / frame.grid.cells.z);
+    uint block = quotient(place, pixels_of_block());
+    uint rest = place - block * pixels_of_block();
+    uint row = quotient(rest, frame.grid.cells.z);
+    return uvec2((block & 3u) * frame.grid.cells.z + rest - row * frame.grid.cells.z,
+                 (block >> 2) * frame.grid.cells.w + row);
 }
 
 hdrp_v3 place_of(uvec2 pixel, float z)
@@ -42,7 +49,7 @@ void begin_pixels(uvec2 begin)
     if (gl_LocalInvocationIndex == 0u) {
         is_read = 0u;
     }
-    barrier();
+    wait_for_group();
 }
 
 void read_pixels()
@@ -60,27 +67,22 @@ void read_pixels()
         }
         pixel_z[p] = z;
     }
-    barrier();
-    if (gl_LocalInvocationIndex < HDRP_CULL_BLOCK_COUNT) {
+    wait_for_group();
+    hdrp_v2 size = hdrp_v2(frame.pixel.x * float(frame.grid.cells.z),
+                           frame.pixel.y * float(frame.grid.cells.w));
+    for (uint b = gl_LocalInvocationIndex; b < HDRP_CULL_BLOCK_COUNT; b += GROUP) {
         float nearest = HDRP_FLT_MAX;
         float farthest = -1.0;
         for (uint k = 0u; k < pixels_of_block(); ++k) {
-            float z = pixel_z[gl_LocalInvocationIndex * pixels_of_block() + k];
+            float z = pixel_z[b * pixels_of_block() + k];
             nearest = z >= 0.0 && z < nearest ? z : nearest;
             farthest = z > farthest ? z : farthest;
         }
-        block_depths[gl_LocalInvocationIndex] = vec2(nearest, farthest);
+        block_boxes[b] = hdrp_cull_block_box(window.tile.window, size, b,
+                                             hdrp_cull_interval(nearest, farthest),
+                                             frame.camera.forward_orthographic.w);
     }
-    barrier();
-}
-
-hdrp_cull_box block_box(uint block)
-{
-    hdrp_v2 size = hdrp_v2(frame.pixel.x * float(frame.grid.cells.z),
-                           frame.pixel.y * float(frame.grid.cells.w));
-    return hdrp_cull_block_box(window.tile.window, size, block,
-                               hdrp_cull_interval(block_depths[block].x, block_depths[block].y),
-                               frame.camera.forward_orthographic.w);
+    wait_for_group();
 }
 
 // Whether a ball contains one of four pixels, which most do that reach any.
@@ -134,7 +136,7 @@ void ask_boxes(uint hit)
         fill_mask(hit, 0u);
     }
     for (uint b = 0u; b < HDRP_CULL_BLOCK_COUNT; ++b) {
-        reached |= hdrp_cull_box_in_ball(block_box(b), s.ball) << b;
+        reached |= hdrp_cull_box_in_ball(block_boxes[b], s.ball) << b;
     }
     uint inside = ball ? reached >> 16 : 0u; // inside its ball is inside a shape only if it is one
     for (uint b = 0u; has_masks && b < HDRP_CULL_BLOCK_COUNT; ++b) {
@@ -146,23 +148,39 @@ void ask_boxes(uint hit)
     blocks[hit] = inside;
 }
 
-// A thread asks its pixels about a hit.
+void ask_pixel(uint hit, hdrp_cull_shape shape, uint block, uint k)
+{
+    uint p = block * pixels_of_block() + k;
+    if (k < pixels_of_block() && pixel_z[p] >= 0.0 &&
+        hdrp_cull_shape_contains(shape, place_of(pixel_at(p), pixel_z[p])) > 0.0) {
+        atomicOr(blocks[hit], 1u << block);
+        if ((frame.picture.z & FLAG_MASKS) != 0u) {
+            atomicOr(mask_words[hit * MASK_WORDS_MAX + (p >> 5)], 1u << (p & 31u));
+        }
+    }
+}
+
+// A thread asks its pixels about a hit. As many blocks at once as there are threads for.
 void ask_own_pixels(uint hit)
 {
     hdrp_cull_shape shape = shapes[hits[hit]];
-    bool has_masks = (frame.picture.z & FLAG_MASKS) != 0u;
-    for (uint p = gl_LocalInvocationIndex; p < HDRP_CULL_BLOCK_COUNT * pixels_of_block();
-         p += GROUP) {
-        uint block = p / pixels_of_block();
-        if ((undecided[hit] >> block & 1u) == 0u || pixel_z[p] < 0.0) {
-            continue;
-        }
-        if (hdrp_cull_shape_contains(shape, place_of(pixel_at(p), pixel_z[p])) > 0.0) {
-            atomicOr(blocks[hit], 1u << block);
-            if (has_masks) {
-                atomicOr(mask_words[hit * MASK_WORDS_MAX + (p >> 5)], 1u << (p & 31u));
+    uint of_block = pixels_of_block();
+    uint at_once = clamp(GROUP / of_block, 1u, HDRP_CULL_BLOCK_COUNT);
+    uint step = at_once > 1u ? of_block : GROUP;
+    uint own_block = min(gl_LocalInvocationIndex / of_block, at_once); // the last threads: none
+    uint own_pixel = at_once > 1u ? gl_LocalInvocationIndex % of_block : gl_LocalInvocationIndex;
+    own_block = at_once > 1u ? own_block : 0u;
+    uint rest = undecided[hit];
+    while (rest != 0u) {
+        uint first = uint(findLSB(rest)) / at_once * at_once;
+        uint block = first + own_block;
+        if (own_block < at_once && (rest >> block & 1u) != 0u) {
+            for (uint k = own_pixel; k < of_block; k += 2u * step) { // few turns: see group.glsl
+                ask_pixel(hit, shape, block, k);
+                ask_pixel(hit, shape, block, k + step);
             }
         }
+        rest &= ~(((1u << at_once) - 1u) << first);
     }
 }
 
@@ -191,24 +209,24 @@ void ask_pixels(uint n)
     if (is_read == 0u) { // for all threads: what they wait for below is between
         read_pixels();
     }
-    barrier();
+    wait_for_group();
     if (thread == 0u) {
         is_read = 1u;
     }
     if (thread < n && !around) {
         ask_boxes(thread);
     }
-    barrier();
+    wait_for_group();
     for (uint h = 0u; h < n; ++h) {
         if (undecided[h] != 0u) {
             ask_own_pixels(h);
         }
     }
-    barrier();
+    wait_for_group();
     if (!all && thread < n && blocks[thread] != 0u) {
         blocks[thread] = 0xffffu;
     }
-    barrier();
+    wait_for_group();
 }
 
 void write_mask(uint entry, uint hit)

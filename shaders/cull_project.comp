@@ -9,7 +9,6 @@
 #define SHAPE_ACCESS writeonly
 #include "cull_lists.glsl"
 
-layout(local_size_x = GROUP) in;
 layout(std430, binding = 4) readonly buffer World { hdrp_cull_shape world[]; };
 layout(std430, binding = 5) writeonly buffer Tiles { vec4 tiles[]; };
 

@@ -5,11 +5,10 @@
 #define FILLS_LISTS
 #include "cull_lists.glsl"
 
-layout(local_size_x = GROUP) in;
 
-shared uint hits[GROUP];   // shapes of the chunk
-shared uint blocks[GROUP]; // that each of them reaches
-shared uint places[GROUP]; // in the chunk
+shared uint hits[GROUP_MAX];   // shapes of the chunk
+shared uint blocks[GROUP_MAX]; // that each of them reaches
+shared uint places[GROUP_MAX]; // in the chunk
 shared uint hit_bits[2];
 shared uint category_counts[HDRP_CULL_CATEGORY_COUNT];
 
@@ -27,7 +26,8 @@ Window window;
 uint bits_of(uint from)
 {
     uint tiles = frame.grid.tiles.z * frame.grid.tiles.w;
-    return tiles + tile_index * ((frame.numbers.y + GROUP - 1u) / GROUP * 2u) + from / 32u;
+    uint words = (GROUP + 31u) / 32u; // of a chunk
+    return tiles + (tile_index * ((frame.numbers.y + GROUP - 1u) / GROUP) + from / GROUP) * words;
 }
 
 // The hits of a chunk of candidates; returns how many. With a limit only those that have room.
@@ -52,7 +52,7 @@ uint collect(uint from, bool limited)
         places[at] = gl_LocalInvocationIndex;
         blocks[at] = 0xffffu;
     }
-    barrier();
+    wait_for_group();
 #ifdef ASKS_PIXELS
     ask_pixels(total);
 #endif
@@ -66,12 +66,12 @@ void note_hits(uint n, uint from)
     if (thread < 2u) {
         hit_bits[thread] = 0u;
     }
-    barrier();
+    wait_for_group();
     if (thread < n && blocks[thread] != 0u) {
         atomicOr(hit_bits[places[thread] >> 5], 1u << (places[thread] & 31u));
     }
-    barrier();
-    if (thread < 2u) {
+    wait_for_group();
+    if (thread < (GROUP + 31u) / 32u) {
         dropped_of_tile[bits_of(from) + thread] = hit_bits[thread];
     }
 }
@@ -152,15 +152,15 @@ void main()
                 note_hits(n, from);
             }
             written += write(n, written);
-            barrier();
+            wait_for_group();
         }
         memoryBarrierBuffer(); // of the bits of hits
-        barrier();
+        wait_for_group();
         if (level) {
             end_level(phase - PHASE_LEVEL);
         }
     }
-    barrier();
+    wait_for_group();
     uint missed = max(all, written) - written;
     if (gl_LocalInvocationIndex == 0u) {
         cells[tile_index] = uvec4(tile_index * frame.grid.cells.y,

@@ -7,11 +7,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "hdrp_cull_grid.h"
+#include "group.glsl"
 
-#define WIDTH  8
-#define HEIGHT 8
-
-layout(local_size_x = WIDTH, local_size_y = HEIGHT) in;
 layout(binding = 0) uniform texture2D depths;
 layout(std430, binding = 1) writeonly buffer Tiles { vec4 tiles[]; };
 layout(push_constant) uniform Push
@@ -30,17 +27,21 @@ void main()
 {
     uvec2 tile = gl_WorkGroupID.xy;
     uvec2 begin = tile * grid.tiles.xy;
-    uvec2 end = min(begin + grid.tiles.xy, picture.xy);
+    uvec2 size = min(begin + grid.tiles.xy, picture.xy) - begin;
     float nearest = HDRP_FLT_MAX;
     float farthest = -1.0;
     if (gl_LocalInvocationIndex == 0u) {
         nearest_bits = hdrp_bits_from_f32(HDRP_FLT_MAX);
         farthest_bits = 0u;
     }
-    barrier();
-    for (uint y = begin.y + gl_LocalInvocationID.y; y < end.y; y += HEIGHT) {
-        for (uint x = begin.x + gl_LocalInvocationID.x; x < end.x; x += WIDTH) {
-            float texel = texelFetch(depths, ivec2(x, y), 0).x;
+    wait_for_group();
+    // Whole rows of threads: a quotient for each pixel would take longer than the pixel.
+    uint across = min(size.x, GROUP);
+    uint rows = GROUP / across;
+    uvec2 own = uvec2(gl_LocalInvocationIndex % across, gl_LocalInvocationIndex / across);
+    for (uint y = own.y; own.y < rows && y < size.y; y += rows) {
+        for (uint x = own.x; x < size.x; x += across) {
+            float texel = texelFetch(depths, ivec2(begin + uvec2(x, y)), 0).x;
             float z = picture.z != 0u ? hdrp_view_depth(device, texel) : texel;
             z = hdrp_cull_opaque_depth(z, limits.x, limits.y);
             nearest = z >= 0.0 && z < nearest ? z : nearest;
@@ -51,7 +52,7 @@ void main()
         atomicMin(nearest_bits, hdrp_bits_from_f32(nearest));
         atomicMax(farthest_bits, hdrp_bits_from_f32(farthest));
     }
-    barrier();
+    wait_for_group();
     if (gl_LocalInvocationIndex == 0u) {
         float most = farthest_bits == 0u ? -1.0 : hdrp_f32_from_bits(farthest_bits);
         tiles[tile.y * grid.tiles.z + tile.x] =

@@ -17,15 +17,7 @@ typedef struct variant {
                              float occlusion, float specular_occlusion);
 } variant;
 
-/* A source with a size is seen as if the surface had this much more variance of its normals. */
-static inline void widen(hdrp_brdf_data* d, hdrp_brdf_lit_view* w, float variance)
-{
-    w->alphas.t = hdrp_sqrt(w->alphas.t * w->alphas.t + variance);
-    w->alphas.b = hdrp_sqrt(w->alphas.b * w->alphas.b + variance);
-    d->coat_perceptual_roughness =
-        hdrp_brdf_perceptual_roughness_filtered(d->coat_perceptual_roughness, variance);
-}
-
+/* A source with a size is seen as if the surface had more variance of its normals. */
 #define DEFINE_VARIANT(name, features)                                                             \
     static void view_##name(const rd_shade_point* p, hdrp_brdf_fgd fgd, hdrp_brdf_lit_view* out)   \
     {                                                                                              \
@@ -34,10 +26,8 @@ static inline void widen(hdrp_brdf_data* d, hdrp_brdf_lit_view* w, float varianc
     static hdrp_brdf_lit eval_##name(const rd_shade_point* p, const hdrp_brdf_lit_view* view,      \
                                      hdrp_v3 l, float variance)                                    \
     {                                                                                              \
-        hdrp_brdf_data d = p->data;                                                                \
-        hdrp_brdf_lit_view w = *view;                                                              \
-        widen(&d, &w, variance);                                                                   \
-        return hdrp_brdf_lit_eval(d, w, l, features);                                              \
+        return hdrp_brdf_lit_eval(p->data, hdrp_brdf_lit_view_widened(*view, variance), l,         \
+                                  features);                                                       \
     }                                                                                              \
     static hdrp_brdf_lit_env env_##name(const rd_shade_point* p, const hdrp_brdf_lit_view* view,   \
                                         float occlusion, float specular_occlusion)                 \

@@ -990,7 +990,8 @@ static void expect_lit(const char* name, const scene_desc* desc,
     if (lit > 0) {
         printf("%s: %u pixels, %u of them in parts, relative RMSE %.2g, worst pixel %.2g\n", name,
                lit, apart, reference > 0.0 ? sqrt(error / reference) : 0.0, worst);
-        assert_true(error <= 1e-6 * reference);
+        /* Devices decode sRGB as coarsely as its codes allow. */
+        assert_true(error <= (desc->srgb ? 4e-6 : 1e-6) * reference);
         assert_true(worst < 0.02);
     }
     free(found);
@@ -1010,6 +1011,7 @@ static void pixels_are_lit_as_on_the_cpu(void** state)
         {"one pixel", {.width = 1, .height = 1, .tile = 16, .lights = 2, .plain = true}},
         {"points and spots",
          {.width = 97, .height = 61, .tile = 16, .lights = 50, .types = 0xcu, .plain = true}},
+        {"sRGB", {.width = 40, .height = 30, .tile = 16, .lights = 20, .srgb = true}},
         {"no lights", {.width = 40, .height = 30, .tile = 16, .materials = 31u}},
         {"every material",
          {.width = 120,
