@@ -119,6 +119,19 @@ extern "C" {
 
 #define HDRP_I_GPU_VK_FAMILIES_MAX 64u
 
+/* The shaders of a header. */
+typedef hdrp_i_gpu_vk_shader (*hdrp_i_gpu_vk_shader_of)(uint32_t);
+
+#define HDRP_I_GPU_VK_TOPICS 4u
+
+static hdrp_i_gpu_vk_shader_of hdrp_i_gpu_vk_topic(uint32_t topic)
+{
+    static const hdrp_i_gpu_vk_shader_of topics[HDRP_I_GPU_VK_TOPICS] = {
+        hdrp_i_gpu_vk_cull_shader, hdrp_i_gpu_vk_env_shader, hdrp_i_gpu_vk_light_shader,
+        hdrp_i_gpu_vk_shadow_shader};
+    return topics[topic];
+}
+
 /* ---- what is missing ------------------------------------------------------------------------- */
 
 /* Counts what is missing, and keeps the one that is asked for. */
@@ -165,6 +178,38 @@ static VkQueueFlags hdrp_i_gpu_vk_queue_flags(const hdrp_gpu_vk_functions* vk,
     return desc->queue_family < count ? families[desc->queue_family].queueFlags : 0u;
 }
 
+/* The most descriptors of some types, a letter each, that a shader of some passes has. */
+static uint32_t hdrp_i_gpu_vk_most(uint32_t passes, const char* letters)
+{
+    uint32_t most = 0u, topic, i, n;
+    const char* at;
+    for (topic = 0u; topic < HDRP_I_GPU_VK_TOPICS; ++topic) {
+        hdrp_i_gpu_vk_shader_of shader_of = hdrp_i_gpu_vk_topic(topic);
+        for (i = 0u; shader_of(i).name; ++i) {
+            n = 0u;
+            for (at = shader_of(i).bindings; *at && (shader_of(i).pass & passes) != 0u; ++at) {
+                n += strchr(letters, *at) ? 1u : 0u;
+            }
+            most = n > most ? n : most;
+        }
+    }
+    return most;
+}
+
+static void hdrp_i_gpu_vk_check_limits(hdrp_i_gpu_vk_missing* missing,
+                                       const VkPhysicalDeviceLimits* limits, uint32_t passes)
+{
+    hdrp_i_gpu_vk_need(
+        missing, limits->maxPerStageDescriptorStorageBuffers >= hdrp_i_gpu_vk_most(passes, "b"),
+        "maxPerStageDescriptorStorageBuffers");
+    hdrp_i_gpu_vk_need(
+        missing, limits->maxPerStageDescriptorSampledImages >= hdrp_i_gpu_vk_most(passes, "tc"),
+        "maxPerStageDescriptorSampledImages");
+    hdrp_i_gpu_vk_need(
+        missing, limits->maxPerStageDescriptorStorageImages >= hdrp_i_gpu_vk_most(passes, "s"),
+        "maxPerStageDescriptorStorageImages");
+}
+
 /* Loads the functions, and asks for everything that passes need. */
 static void hdrp_i_gpu_vk_check(hdrp_gpu_vk_functions* vk, const hdrp_gpu_vk_desc* desc,
                                 hdrp_i_gpu_vk_missing* missing)
@@ -186,12 +231,7 @@ static void hdrp_i_gpu_vk_check(hdrp_gpu_vk_functions* vk, const hdrp_gpu_vk_des
     hdrp_i_gpu_vk_need(missing, properties.apiVersion >= VK_API_VERSION_1_1, "Vulkan 1.1");
     hdrp_i_gpu_vk_need(missing, (hdrp_i_gpu_vk_queue_flags(vk, desc) & VK_QUEUE_COMPUTE_BIT) != 0u,
                        "VK_QUEUE_COMPUTE_BIT in the queue family");
-    if (passes & (HDRP_GPU_VK_PASS_LISTS | HDRP_GPU_VK_PASS_BLOCKERS)) {
-        hdrp_i_gpu_vk_need(missing,
-                           properties.limits.maxPerStageDescriptorStorageBuffers >=
-                               HDRP_I_GPU_VK_LIST_BUFFERS,
-                           "maxPerStageDescriptorStorageBuffers of 10");
-    }
+    hdrp_i_gpu_vk_check_limits(missing, &properties.limits, passes);
     if (passes & (HDRP_GPU_VK_PASS_FGD | HDRP_GPU_VK_PASS_LIGHT | HDRP_GPU_VK_PASS_SHADOW |
                   HDRP_GPU_VK_PASS_ENVIRONMENT | HDRP_GPU_VK_PASS_TONE_MAP)) {
         hdrp_i_gpu_vk_need(missing,
@@ -271,8 +311,7 @@ static void hdrp_i_gpu_vk_choose_group(hdrp_gpu_vk* gpu)
 }
 
 /* The shaders of the passes that are asked for, of one of the headers. */
-static VkResult hdrp_i_gpu_vk_make_shaders(hdrp_gpu_vk* gpu,
-                                           hdrp_i_gpu_vk_shader (*shader_of)(uint32_t))
+static VkResult hdrp_i_gpu_vk_make_shaders(hdrp_gpu_vk* gpu, hdrp_i_gpu_vk_shader_of shader_of)
 {
     const VkSpecializationMapEntry entries[2] = {
         {0u, (uint32_t)offsetof(hdrp_gpu_vk, group), sizeof gpu->group},
@@ -302,10 +341,9 @@ static VkResult hdrp_i_gpu_vk_make(hdrp_gpu_vk* gpu)
 {
     VkResult r = hdrp_i_gpu_vk_sampler(gpu);
     uint32_t i;
-    r = r == VK_SUCCESS ? hdrp_i_gpu_vk_make_shaders(gpu, hdrp_i_gpu_vk_cull_shader) : r;
-    r = r == VK_SUCCESS ? hdrp_i_gpu_vk_make_shaders(gpu, hdrp_i_gpu_vk_env_shader) : r;
-    r = r == VK_SUCCESS ? hdrp_i_gpu_vk_make_shaders(gpu, hdrp_i_gpu_vk_light_shader) : r;
-    r = r == VK_SUCCESS ? hdrp_i_gpu_vk_make_shaders(gpu, hdrp_i_gpu_vk_shadow_shader) : r;
+    for (i = 0u; i < HDRP_I_GPU_VK_TOPICS && r == VK_SUCCESS; ++i) {
+        r = hdrp_i_gpu_vk_make_shaders(gpu, hdrp_i_gpu_vk_topic(i));
+    }
     for (i = 0u; i < gpu->desc.frames && r == VK_SUCCESS; ++i) {
         r = hdrp_i_gpu_vk_pool(gpu, &gpu->pools[i]);
     }

@@ -5,6 +5,7 @@
 #include "options.h"
 #include "picture.h"
 #include "render.h"
+#include "vk_backend.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -26,6 +27,7 @@ typedef struct app {
     rd_lighting lighting;
     float ev100, exposure;
     rd_renderer renderer;
+    rd_vk* vk; /* of --backend vulkan */
 } app;
 
 /* >>inputs */
@@ -230,7 +232,24 @@ static bool expose(app* a, const rd_camera* camera)
 static bool begin_rendering(app* a)
 {
     rd_renderer_desc d = {&a->options, &a->lighting, a->exposure, &a->stats, &a->progress};
-    return rd_renderer_begin(&a->renderer, &d, &a->report);
+    if (!rd_renderer_begin(&a->renderer, &d, &a->report)) {
+        return false;
+    }
+    if (a->options.backend == RD_BACKEND_VULKAN) {
+        a->vk = rd_vk_open(&a->renderer, &a->report);
+        a->stats.device = a->vk ? rd_vk_device_name(a->vk) : NULL;
+        return a->vk != NULL;
+    }
+    return true;
+}
+
+static bool render(app* a, const rd_camera* camera)
+{
+    if (a->vk) {
+        return rd_vk_render(a->vk, &a->renderer, camera);
+    }
+    rd_render(&a->renderer, camera);
+    return true;
 }
 
 static bool render_frames(app* a, const rd_camera* camera)
@@ -239,7 +258,9 @@ static bool render_frames(app* a, const rd_camera* camera)
         rd_camera c = rd_camera_orbit(*camera, frame_angle(a, camera, i));
         char* path;
         bool ok;
-        rd_render(&a->renderer, &c);
+        if (!render(a, &c)) {
+            return false;
+        }
         path = frame_path(&a->options, i);
         ok = path ? write_picture(a, path) : rd_fail(&a->report, a->options.out, "out of memory");
         free(path);
@@ -331,6 +352,9 @@ static bool finish(app* a)
     rd_stats_limit(&a->stats, "transparent_layers_dropped", (double)c->layers_dropped);
     count_lighting(a);
     count_lists(a);
+    if (a->vk) {
+        rd_vk_count(a->vk, &a->stats);
+    }
     if (!compare(a)) {
         return false;
     }
@@ -366,6 +390,7 @@ static void print_pictures(const rd_options* o)
 
 static void release(app* a)
 {
+    rd_vk_close(a->vk);
     rd_renderer_end(&a->renderer);
     rd_lighting_free(&a->lighting);
     rd_environment_free(&a->environment);

@@ -21,6 +21,7 @@ static const struct {
     {"anisotropy", RD_FEATURE_ANISOTROPY},
     {"iridescence", RD_FEATURE_IRIDESCENCE},
     {"refraction", RD_FEATURE_REFRACTION},
+    {"glass_rays", RD_FEATURE_GLASS_RAYS},
     {"transmission", RD_FEATURE_TRANSMISSION},
     {"tangents", RD_FEATURE_TANGENTS},
     {"normal_maps", RD_FEATURE_NORMAL_MAPS},
@@ -154,8 +155,10 @@ static bool set_size(const argument* a)
 
 static bool set_backend(const argument* a)
 {
-    int unused;
-    return read_word(a, "cpu", &unused);
+    int i;
+    bool ok = read_word(a, "cpu|vulkan", &i);
+    a->options->backend = (rd_backend)i;
+    return ok;
 }
 
 static bool set_quality(const argument* a)
@@ -291,7 +294,7 @@ static const struct {
     {"--env-lux", set_env_lux, "LUX", "scale the sky to this illuminance on level ground"},
     {"--out", set_out, "FILE", ".png (tone-mapped) or .exr (linear); default hdrp_render.png"},
     {"--size", set_size, "WxH", "default 1280x720"},
-    {"--backend", set_backend, "NAME", "cpu"},
+    {"--backend", set_backend, "NAME", "cpu (default) or vulkan: a GPU, else Mesa's lavapipe"},
     {"--quality", set_quality, "NAME", "fast, balanced (default), reference (path traced)"},
     {"--path", set_path, "NAME", "deferred (default) or forward"},
     {"--spp", set_spp, "N", "samples a pixel; default by quality"},

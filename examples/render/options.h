@@ -9,6 +9,7 @@
 typedef enum rd_quality { RD_QUALITY_FAST, RD_QUALITY_BALANCED, RD_QUALITY_REFERENCE } rd_quality;
 /* The built-in scenes. */
 typedef enum rd_builtin { RD_BUILTIN_DISPLAY, RD_BUILTIN_LIGHTS } rd_builtin;
+typedef enum rd_backend { RD_BACKEND_CPU, RD_BACKEND_VULKAN } rd_backend;
 typedef enum rd_path { RD_PATH_DEFERRED, RD_PATH_FORWARD } rd_path;
 
 /* What --features turns on and off. */
@@ -30,9 +31,10 @@ typedef enum rd_path { RD_PATH_DEFERRED, RD_PATH_FORWARD } rd_path;
 #define RD_FEATURE_TANGENTS     (1u << 15) /* of the file; without: from uv, as the file has none */
 #define RD_FEATURE_LISTS        (1u << 16) /* of lights; without: all surfaces visit all lights */
 #define RD_FEATURE_BLOCKERS     (1u << 17) /* of the lights of the scene */
-#define RD_FEATURE_ALL          ((1u << 18) - 1u)
+#define RD_FEATURE_GLASS_RAYS   (1u << 18) /* through volumes, to what is behind them */
+#define RD_FEATURE_ALL          ((1u << 19) - 1u)
 /* Not for the command line: all materials are middle grey, as exposure meters want it. */
-#define RD_FEATURE_GREY_CARDS (1u << 18)
+#define RD_FEATURE_GREY_CARDS (1u << 19)
 
 typedef struct rd_options {
     const char* scene; /* NULL: a built-in one */
@@ -47,6 +49,7 @@ typedef struct rd_options {
     int lights;
     int frames;
     uint32_t seed;
+    rd_backend backend;
     rd_quality quality;
     rd_path path;
     rd_view view;

@@ -110,11 +110,17 @@ static void finish(const rd_sub_frame* s, layer* l, const rd_shade_point* p,
     hdrp_v3 rest = hdrp_v3_splat(1.0f - l->alpha);
     l->light = hdrp_v3_scale(light, l->alpha);
     l->through = hdrp_v3_mad(rest, shaded->transmitted_weight, l->alpha);
-    l->transmitted_perceptual_roughness = shaded->transmitted_perceptual_roughness;
+    /* Coverage lets light through as it is, however rough the surface. */
+    l->transmitted_perceptual_roughness = hdrp_v3_max_component(shaded->transmitted_weight) > 0.0f
+                                              ? shaded->transmitted_perceptual_roughness
+                                              : 0.0f;
     l->bends = p->data.volume_thickness_m > 0.0f;
     l->sees_sky = false;
-    if (l->bends) {
+    if (l->bends && rd_has(s, RD_FEATURE_GLASS_RAYS)) {
         follow(s, p, shaded->transmitted_direction, l);
+    } else if (l->bends) {
+        l->source_direction = shaded->transmitted_direction;
+        l->source = hdrp_v3_mad(p->position, l->source_direction, p->data.volume_thickness_m);
     }
 }
 

@@ -106,6 +106,9 @@ void rd_stats_print(const rd_stats* s)
 {
     double total = rd_now_ms() - s->begin_ms;
     double other = total;
+    if (s->device) {
+        printf("device: %s\n", s->device);
+    }
     printf("%-24s %10s %6s\n", "pass", "ms", "%");
     for (int i = 0; i < s->pass_count; ++i) {
         double ms = s->passes[i].value;
@@ -170,6 +173,10 @@ static bool write_all(const rd_stats* s, FILE* f)
     write_string(f, s->scene ? s->scene : "built-in");
     fprintf(f, ",\n  \"width\": %d,\n  \"height\": %d,\n  \"samples_per_pixel\": %d", s->width,
             s->height, s->spp);
+    if (s->device) {
+        fputs(",\n  \"device\": ", f);
+        write_string(f, s->device);
+    }
     fputs(",\n  \"total_ms\": ", f);
     write_number(f, rd_now_ms() - s->begin_ms);
     write_object(f, "passes_ms", s->passes, s->pass_count);

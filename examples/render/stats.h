@@ -27,7 +27,8 @@ typedef struct rd_stats {
     int list_count, variant_count, variant_cycles_count;
     int pass_count, count_count, limit_count, error_count, lit_count, lit_ns_count;
     double begin_ms;
-    const char* scene; /* for the JSON file */
+    const char* scene;  /* for the JSON file */
+    const char* device; /* of --backend vulkan; NULL: the CPU */
     int width, height, spp;
 } rd_stats;
 

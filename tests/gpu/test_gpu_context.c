@@ -19,6 +19,7 @@ static struct {
     VkResult failure;                        /* what they return then */
     const VkAllocationCallbacks* allocation; /* that every call must be given */
     VkPipelineCache cache;                   /* likewise, calls that make pipelines */
+    uint32_t storage_buffers;                /* limit of descriptors in a stage; 0: the device's */
     const char* hidden;                      /* a function that the driver has not */
     int names;                               /* of objects, for debuggers */
 } driver;
@@ -166,6 +167,15 @@ static PFN_vkVoidFunction VKAPI_CALL my_vkGetDeviceProcAddr(VkDevice d, const ch
     return vkGetDeviceProcAddr(d, name);
 }
 
+static VKAPI_ATTR void VKAPI_CALL my_vkGetPhysicalDeviceProperties(VkPhysicalDevice physical,
+                                                                   VkPhysicalDeviceProperties* p)
+{
+    vkGetPhysicalDeviceProperties(physical, p);
+    if (driver.storage_buffers) {
+        p->limits.maxPerStageDescriptorStorageBuffers = driver.storage_buffers;
+    }
+}
+
 static PFN_vkVoidFunction VKAPI_CALL my_vkGetInstanceProcAddr(VkInstance instance, const char* name)
 {
     if (driver.hidden && strcmp(name, driver.hidden) == 0) {
@@ -173,6 +183,9 @@ static PFN_vkVoidFunction VKAPI_CALL my_vkGetInstanceProcAddr(VkInstance instanc
     }
     if (strcmp(name, "vkGetDeviceProcAddr") == 0) {
         return (PFN_vkVoidFunction)my_vkGetDeviceProcAddr;
+    }
+    if (strcmp(name, "vkGetPhysicalDeviceProperties") == 0) {
+        return (PFN_vkVoidFunction)my_vkGetPhysicalDeviceProperties;
     }
     if (strcmp(name, "vkSetDebugUtilsObjectNameEXT") == 0) {
         return (PFN_vkVoidFunction)my_vkSetDebugUtilsObjectNameEXT;
@@ -234,6 +247,12 @@ static void what_is_missing_has_a_name(void** state)
     driver.hidden = "vkGetPhysicalDeviceFormatProperties";
     expect_missing(&desc, "vkGetPhysicalDeviceFormatProperties");
     driver.hidden = NULL;
+    driver.storage_buffers = 9; /* lists need one more, measuring depth one at all */
+    expect_missing(&desc, "maxPerStageDescriptorStorageBuffers");
+    desc.passes = HDRP_GPU_VK_PASS_DEPTH;
+    assert_null(hdrp_gpu_vk_missing(&desc, 0));
+    desc.passes = 0;
+    driver.storage_buffers = 0;
     desc.device = VK_NULL_HANDLE;
     desc.get_instance_proc_addr = NULL;
     assert_string_equal(hdrp_gpu_vk_missing(&desc, 0), "device");
