@@ -20,6 +20,7 @@ static struct {
     const VkAllocationCallbacks* allocation; /* that every call must be given */
     VkPipelineCache cache;                   /* likewise, calls that make pipelines */
     uint32_t storage_buffers;                /* limit of descriptors in a stage; 0: the device's */
+    uint32_t shared_bytes;                   /* limit of memory of a group; 0: the device's */
     const char* hidden;                      /* a function that the driver has not */
     int names;                               /* of objects, for debuggers */
 } driver;
@@ -174,6 +175,9 @@ static VKAPI_ATTR void VKAPI_CALL my_vkGetPhysicalDeviceProperties(VkPhysicalDev
     if (driver.storage_buffers) {
         p->limits.maxPerStageDescriptorStorageBuffers = driver.storage_buffers;
     }
+    if (driver.shared_bytes) {
+        p->limits.maxComputeSharedMemorySize = driver.shared_bytes;
+    }
 }
 
 static PFN_vkVoidFunction VKAPI_CALL my_vkGetInstanceProcAddr(VkInstance instance, const char* name)
@@ -251,8 +255,13 @@ static void what_is_missing_has_a_name(void** state)
     expect_missing(&desc, "maxPerStageDescriptorStorageBuffers");
     desc.passes = HDRP_GPU_VK_PASS_DEPTH;
     assert_null(hdrp_gpu_vk_missing(&desc, 0));
-    desc.passes = 0;
     driver.storage_buffers = 0;
+    driver.shared_bytes = 16384; /* the least that there is */
+    desc.passes = HDRP_GPU_VK_PASS_ALL & ~HDRP_GPU_VK_PASS_ENVIRONMENT;
+    assert_null(hdrp_gpu_vk_missing(&desc, 0));
+    desc.passes = 0;
+    expect_missing(&desc, "maxComputeSharedMemorySize");
+    driver.shared_bytes = 0;
     desc.device = VK_NULL_HANDLE;
     desc.get_instance_proc_addr = NULL;
     assert_string_equal(hdrp_gpu_vk_missing(&desc, 0), "device");
