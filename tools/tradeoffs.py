@@ -215,6 +215,7 @@ class Data:
         self.prefilters = rows(first_result("prefilters_cpu_*.csv"))
         self.cull_file = first_result("cull_cpu_*.csv")
         self.cull = cull_rows(self.cull_file)
+        self.oit = rows(ROOT / "tests/oit/recorded.csv")
         self.recorded_file = ROOT / "tests/accuracy/recorded.csv"
         self.recorded = {row["id"]: row for row in rows(self.recorded_file)}
         self.half = {row["id"]: row for row in rows(ROOT / "tests/accuracy/half.csv")}
@@ -488,12 +489,77 @@ def gpu_passes(data):
                          devices=device_tables(data), talk=talk)
 
 
+def oit_lines(data, cases, precision="native"):
+    """The error of each mode on some cases of random pixels."""
+    found = {(row["mode"], row["case"]): row for row in data.oit if row["precision"] == precision}
+    lines = []
+    for mode in dict.fromkeys(row["mode"] for row in data.oit):
+        some = found[mode, cases[0]]
+        lines.append([mode, some["passes"], some["bytes_per_pixel"],
+                      *(shown(found[mode, case]["rms"]) for case in cases)])
+    return lines
+
+
+def transparency(data):
+    """The section on transparency without sorting; nothing where it has not been measured."""
+    if not data.oit:
+        return ""
+    heads = ["mode", "passes", "bytes per pixel"]
+    tables = {name: table(heads + titles, oit_lines(data, cases, precision),
+                          "lrr" + "r" * len(cases))
+              for name, (titles, cases, precision) in OIT_TABLES.items()}
+    return TRANSPARENCY.format(**tables)
+
+
+# Of each table: heads of columns, cases, and the precision of targets.
+OIT_TABLES = {
+    "opacities": (["0.05 to 0.3", "0.05 to 0.95", "0.8 to 0.99", "only adds", "half of it adds",
+                   "behind 0.99"],
+                  ["low", "mixed", "high", "additive", "half_emissive", "front_99"], "native"),
+    "depths": ([f"{a} {d} m" for d in ("1 to 10", "0.1 to 1000") for a in ("low", "mixed", "high")],
+               [f"{a}_{d}" for d in ("1_10", "0.1_1000") for a in ("low", "mixed", "high")],
+               "native"),
+    "counts": (["low", "mixed", "high", "-10 stops", "-5 stops", "+5 stops", "+10 stops"],
+               ["low_32", "mixed_32", "high_32", "stops_-10", "stops_-5", "stops_5", "stops_10"],
+               "native"),
+    "compact": (["0.05 to 0.3", "0.05 to 0.95", "0.8 to 0.99", "only adds", "half of it adds"],
+                ["low", "mixed", "high", "additive", "half_emissive"], "compact"),
+}
+
+TRANSPARENCY = """## Transparency without sorting
+
+The modes of `hdrp_oit.h` against sorting: root mean square errors of linear RGB in [0,1] on random
+pixels of tests/oit, 2 to 12 layers between 1 and 200 m in no order, blended as hardware rounds.
+Passes are those over transparent surfaces. By opacity of the layers; where all of them or half of
+them cover nothing and emit their colour times such an opacity; and behind a nearest layer of 0.99:
+
+{opacities}
+- `recommended` is what one pass can do with two RGBA16F targets. Its weight was fitted on depths of
+  1 to 200 m (tools/fit_oit.py).
+- `wavelet` and `moments` know how much of each layer is seen, and so of emission. They draw three
+  times. Moments need 32-bit floats; wavelets add half floats.
+- `eq7` to `2015` are published weights, `talk_weight` that of the Volition talk, all of them divided
+  by sums of weighted alpha and with emission in a target of its own; `talk` is its form as shown.
+
+Other depths, with opacities as above:
+
+{depths}
+Up to 32 layers; and colours 2^-10 to 2^10 times as bright, relative to that:
+
+{counts}
+Light in R11G11B10F and coverage in R8 where the first table has RGBA16F for both. What only adds
+is then rounded at each layer:
+
+{compact}
+"""
+
+
 def document(data):
     topics = "\n".join(topic_section(topic, variants)
                        for topic, variants in data.topics().items())
     return TEMPLATE.format(gpu=GPU, minute=minute(data), topics=topics, lit=features_table(data),
                            pictures=pictures_table(data), culling=culling(data),
-                           gpu_passes=gpu_passes(data),
+                           gpu_passes=gpu_passes(data), transparency=transparency(data),
                            peers=peers(data), published=published(data), skies=skies(data),
                            formulas=every_formula(data),
                            remarks="\n".join(f"- {remark}" for path in (
@@ -605,7 +671,7 @@ not. Times of equal work differ by up to a fifth from run to run; errors do not.
 ![Image error against milliseconds](images/tradeoffs_render.svg)
 
 {pictures}
-{culling}{gpu_passes}## Skies
+{culling}{gpu_passes}{transparency}## Skies
 
 GGX lobes and irradiance of a sky against brute force, relative to what is right, and one core's time
 for a whole map.
