@@ -441,6 +441,7 @@ them cover nothing and emit their colour times such an opacity; and behind a nea
 {opacities}
 - `recommended` is what one pass can do with two RGBA16F targets. Its weight was fitted on depths of
   1 to 200 m (tools/fit_oit.py).
+- `front` keeps the nearest layer apart, whose depth a pass before it wrote.
 - `wavelet` and `moments` know how much of each layer is seen, and so of emission. They draw three
   times. Moments need 32-bit floats; wavelets add half floats.
 - `eq7` to `2015` are published weights, `talk_weight` that of the Volition talk, all of them divided
