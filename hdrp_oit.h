@@ -318,8 +318,8 @@ HDRP_FN hdrp_v3 hdrp_oit_composite(hdrp_oit_targets t, hdrp_v3 behind, float sca
  *  returns  any    what one layer would hold
  *  edges    none
  *  error    none: a definition
- *  source   Volition 2018, "Order Independent Transparency" (GDC talk), composite shader in the
- *           appendix */
+ *  source   Kircher 2018, "Rendering Technology in Agents of Mayhem", composite shader in
+ *           the appendix */
 HDRP_FN hdrp_oit_targets hdrp_oit_merge(hdrp_oit_targets a, hdrp_oit_targets b)
 {
     hdrp_oit_targets t;
@@ -331,11 +331,11 @@ HDRP_FN hdrp_oit_targets hdrp_oit_merge(hdrp_oit_targets a, hdrp_oit_targets b)
 }
 
 /* >>talk
- * Weighted sums with additiveness as they were shown, for comparison and for content that was tuned
- * for them. Known to be wrong: n equal layers that do not emit keep the brightness of one (alpha
- * 0.3, n = 4: 0.30 where 0.76 is right), as sums are divided by sums of weights without alpha;
- * 1000 * 20 for each fragment overflows a half float at the fourth bright one; additiveness has
- * steps of 1/32 of a layer and ends at eight. */
+ * Weighted sums with additiveness as Kircher showed them in 2018 (Agents of Mayhem), for comparison
+ * and for content that was tuned for them. Known to be wrong: n equal layers that do not emit keep
+ * the brightness of one (alpha 0.3, n = 4: 0.30 where 0.76 is right), as sums are divided by sums of
+ * weights without alpha; 1000 * 20 for each fragment overflows a half float at the fourth bright
+ * one; additiveness has steps of 1/32 of a layer and ends at eight. */
 
 /* Choices of artists and constants of the shader. Made by hdrp_oit_talk_settings_make. */
 struct hdrp_oit_talk_settings {
@@ -354,7 +354,7 @@ HDRP_TYPEDEF(hdrp_oit_talk_settings)
  *  returns   valid
  *  edges     NaN counts as the least
  *  error     none: a definition
- *  source    Volition 2018, "Order Independent Transparency" (GDC talk), shader in the appendix */
+ *  source    Kircher 2018, "Rendering Technology in Agents of Mayhem", shader in the appendix */
 HDRP_FN hdrp_oit_talk_settings hdrp_oit_talk_settings_make(float feather, float exposure)
 {
     hdrp_oit_talk_settings s;
@@ -383,7 +383,7 @@ HDRP_FN float hdrp_i_oit_talk_emission(hdrp_oit_fragment f, hdrp_oit_talk_settin
  *  returns  [0,20] 0 for what neither covers nor emits
  *  edges    depths outside of the canonical range count as its ends
  *  error    <= 7e-7 relative with the default settings  @accuracy oit_talk_weight
- *  source   Volition 2018, "Order Independent Transparency" (GDC talk), shader in the appendix */
+ *  source   Kircher 2018, "Rendering Technology in Agents of Mayhem", shader in the appendix */
 HDRP_FN float hdrp_oit_talk_weight(hdrp_oit_fragment f, hdrp_oit_talk_settings s)
 {
     float emission = hdrp_saturate(hdrp_i_oit_talk_emission(f, s)) * s.emissive_sensitivity;
@@ -401,7 +401,7 @@ HDRP_FN float hdrp_oit_talk_weight(hdrp_oit_fragment f, hdrp_oit_talk_settings s
  *  returns  valid  light: x alpha, w an eighth of the additiveness
  *  edges    colours are limited to s.color_max
  *  error    none: a definition on hdrp_oit_talk_weight
- *  source   Volition 2018, "Order Independent Transparency" (GDC talk), shader in the appendix */
+ *  source   Kircher 2018, "Rendering Technology in Agents of Mayhem", shader in the appendix */
 HDRP_FN hdrp_oit_targets hdrp_oit_talk_export(hdrp_oit_fragment f, hdrp_oit_talk_settings s)
 {
     hdrp_oit_targets t;
@@ -420,7 +420,7 @@ HDRP_FN hdrp_oit_targets hdrp_oit_talk_export(hdrp_oit_fragment f, hdrp_oit_talk
  *  returns  any    finite where behind is
  *  edges    where a sum of colours is infinite or above a half float, 100; NaN counts as 0
  *  error    none: a definition
- *  source   Volition 2018, "Order Independent Transparency" (GDC talk), shader in the appendix */
+ *  source   Kircher 2018, "Rendering Technology in Agents of Mayhem", shader in the appendix */
 HDRP_FN hdrp_v3 hdrp_oit_talk_composite(hdrp_oit_targets t, hdrp_v3 behind)
 {
     float revealage = hdrp_saturate(t.light.x);
@@ -440,8 +440,8 @@ HDRP_FN hdrp_v3 hdrp_oit_talk_composite(hdrp_oit_targets t, hdrp_v3 behind)
  *  returns  any    what one layer would hold
  *  edges    none
  *  error    none: a definition
- *  source   Volition 2018, "Order Independent Transparency" (GDC talk), composite shader in the
- *           appendix */
+ *  source   Kircher 2018, "Rendering Technology in Agents of Mayhem", composite shader in
+ *           the appendix */
 HDRP_FN hdrp_oit_targets hdrp_oit_talk_merge(hdrp_oit_targets a, hdrp_oit_targets b)
 {
     hdrp_oit_targets t = hdrp_oit_merge(a, b);
@@ -720,8 +720,8 @@ HDRP_TYPEDEF(hdrp_oit_moments)
  *  returns  valid
  *  edges    alpha above 1 - 2^-16 absorbs as that does
  *  error    none: hdrp_oit_moments_transmittance states it
- *  source   Muenstermann et al. 2018, "Moment-Based Order-Independent Transparency", eq. 4, with
- *           the nearest fragment apart */
+ *  source   Muenstermann et al. 2018, "Moment-Based Order-Independent Transparency", section on
+ *           power moments; the nearest fragment apart */
 HDRP_FN hdrp_oit_moments hdrp_oit_moments_insert(hdrp_oit_fragment f, hdrp_oit_place place)
 {
     hdrp_oit_moments m;
@@ -848,9 +848,9 @@ HDRP_FN float hdrp_i_oit_biased(float sum, float inverse, float even, float bias
  *  edges    1 for the nearest fragment; NaN counts as nothing that absorbs
  *  error    none: an estimate; tests/oit measures pixels against sorting
  *  source   Muenstermann et al. 2018, "Moment-Based Order-Independent Transparency", algorithms for
- *           four and six power moments with the bias of 32-bit floats; here overestimation is half
- *           of what is not the fragment's own, where theirs is a quarter of all: the error on mixed
- *           opacity falls from .029 to .017 with six moments */
+ *           four and six power moments with the bias of 32-bit floats
+ *  note     overestimation is half of what is not the fragment's own, where theirs is a quarter of
+ *           all: that is a third or more of the error less */
 HDRP_FN float hdrp_oit_moments_transmittance(hdrp_oit_moments m, hdrp_oit_fragment f,
                                              hdrp_oit_place place, hdrp_u32 count)
 {
