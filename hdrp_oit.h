@@ -333,8 +333,8 @@ HDRP_FN hdrp_oit_targets hdrp_oit_merge(hdrp_oit_targets a, hdrp_oit_targets b)
 /* >>talk
  * Weighted sums with additiveness as Kircher showed them in 2018 (Agents of Mayhem), for comparison
  * and for content that was tuned for them. Known to be wrong: n equal layers that do not emit keep
- * the brightness of one (alpha 0.3, n = 4: 0.30 where 0.76 is right), as sums are divided by sums of
- * weights without alpha; 1000 * 20 for each fragment overflows a half float at the fourth bright
+ * the brightness of one (alpha 0.3, n = 4: 0.30 where 0.76 is right), as sums are divided by sums
+ * of weights without alpha; 1000 * 20 for each fragment overflows a half float at the fourth bright
  * one; additiveness has steps of 1/32 of a layer and ends at eight. */
 
 /* Choices of artists and constants of the shader. Made by hdrp_oit_talk_settings_make. */
