@@ -9,8 +9,9 @@
  *     hdrp_oit_targets t = hdrp_oit_export(f, scale);                    in the fragment shader
  *     color = hdrp_oit_composite(t_of_the_pixel, opaque_color, scale);   for each pixel, afterwards
  *
- * hdrp_oit_describe_targets says which targets each mode needs and how they are blended. The better
- * modes draw transparent surfaces three times: the range of depths, what absorbs where, and colour:
+ * hdrp_oit_describe_targets says which targets each mode needs, and how they are blended. After a
+ * pass of depth hdrp_oit_front_export keeps the nearest fragment apart. The better modes draw
+ * transparent surfaces three times: the range of depths, what absorbs where, and colour:
  *
  *     hdrp_oit_range_export(f)                                           pass 0, blended with MAX
  *     place = hdrp_oit_place_of(f, range_of_the_pixel);
@@ -40,6 +41,7 @@
  *   recommended: weight weighted_export export composite merge
  *   talk: talk_settings_make talk_weight talk_export talk_composite talk_merge
  *   places: range_export place_of layer_export layer_composite
+ *   front: front_export front_composite
  *   wavelet: wavelet_insert wavelet_transmittance
  *   moments: moments_insert moments_transmittance
  *   images: describe_targets bytes_per_pixel pass_count memory_size image_init clear_rows
@@ -316,8 +318,8 @@ HDRP_FN hdrp_v3 hdrp_oit_composite(hdrp_oit_targets t, hdrp_v3 behind, float sca
  *  returns  any    what one layer would hold
  *  edges    none
  *  error    none: a definition
- *  source   Volition 2018, "Order Independent Transparency" (GDC talk), composite shader in the
- *           appendix */
+ *  source   Kircher 2018, "Rendering Technology in Agents of Mayhem", composite shader in
+ *           the appendix */
 HDRP_FN hdrp_oit_targets hdrp_oit_merge(hdrp_oit_targets a, hdrp_oit_targets b)
 {
     hdrp_oit_targets t;
@@ -329,11 +331,11 @@ HDRP_FN hdrp_oit_targets hdrp_oit_merge(hdrp_oit_targets a, hdrp_oit_targets b)
 }
 
 /* >>talk
- * Weighted sums with additiveness as they were shown, for comparison and for content that was tuned
- * for them. Known to be wrong: n equal layers that do not emit keep the brightness of one (alpha
- * 0.3, n = 4: 0.30 where 0.76 is right), as sums are divided by sums of weights without alpha;
- * 1000 * 20 for each fragment overflows a half float at the fourth bright one; additiveness has
- * steps of 1/32 of a layer and ends at eight. */
+ * Weighted sums with additiveness as Kircher showed them in 2018 (Agents of Mayhem), for comparison
+ * and for content that was tuned for them. Known to be wrong: n equal layers that do not emit keep
+ * the brightness of one (alpha 0.3, n = 4: 0.30 where 0.76 is right), as sums are divided by sums
+ * of weights without alpha; 1000 * 20 for each fragment overflows a half float at the fourth bright
+ * one; additiveness has steps of 1/32 of a layer and ends at eight. */
 
 /* Choices of artists and constants of the shader. Made by hdrp_oit_talk_settings_make. */
 struct hdrp_oit_talk_settings {
@@ -352,7 +354,7 @@ HDRP_TYPEDEF(hdrp_oit_talk_settings)
  *  returns   valid
  *  edges     NaN counts as the least
  *  error     none: a definition
- *  source    Volition 2018, "Order Independent Transparency" (GDC talk), shader in the appendix */
+ *  source    Kircher 2018, "Rendering Technology in Agents of Mayhem", shader in the appendix */
 HDRP_FN hdrp_oit_talk_settings hdrp_oit_talk_settings_make(float feather, float exposure)
 {
     hdrp_oit_talk_settings s;
@@ -381,7 +383,7 @@ HDRP_FN float hdrp_i_oit_talk_emission(hdrp_oit_fragment f, hdrp_oit_talk_settin
  *  returns  [0,20] 0 for what neither covers nor emits
  *  edges    depths outside of the canonical range count as its ends
  *  error    <= 7e-7 relative with the default settings  @accuracy oit_talk_weight
- *  source   Volition 2018, "Order Independent Transparency" (GDC talk), shader in the appendix */
+ *  source   Kircher 2018, "Rendering Technology in Agents of Mayhem", shader in the appendix */
 HDRP_FN float hdrp_oit_talk_weight(hdrp_oit_fragment f, hdrp_oit_talk_settings s)
 {
     float emission = hdrp_saturate(hdrp_i_oit_talk_emission(f, s)) * s.emissive_sensitivity;
@@ -399,7 +401,7 @@ HDRP_FN float hdrp_oit_talk_weight(hdrp_oit_fragment f, hdrp_oit_talk_settings s
  *  returns  valid  light: x alpha, w an eighth of the additiveness
  *  edges    colours are limited to s.color_max
  *  error    none: a definition on hdrp_oit_talk_weight
- *  source   Volition 2018, "Order Independent Transparency" (GDC talk), shader in the appendix */
+ *  source   Kircher 2018, "Rendering Technology in Agents of Mayhem", shader in the appendix */
 HDRP_FN hdrp_oit_targets hdrp_oit_talk_export(hdrp_oit_fragment f, hdrp_oit_talk_settings s)
 {
     hdrp_oit_targets t;
@@ -418,7 +420,7 @@ HDRP_FN hdrp_oit_targets hdrp_oit_talk_export(hdrp_oit_fragment f, hdrp_oit_talk
  *  returns  any    finite where behind is
  *  edges    where a sum of colours is infinite or above a half float, 100; NaN counts as 0
  *  error    none: a definition
- *  source   Volition 2018, "Order Independent Transparency" (GDC talk), shader in the appendix */
+ *  source   Kircher 2018, "Rendering Technology in Agents of Mayhem", shader in the appendix */
 HDRP_FN hdrp_v3 hdrp_oit_talk_composite(hdrp_oit_targets t, hdrp_v3 behind)
 {
     float revealage = hdrp_saturate(t.light.x);
@@ -438,8 +440,8 @@ HDRP_FN hdrp_v3 hdrp_oit_talk_composite(hdrp_oit_targets t, hdrp_v3 behind)
  *  returns  any    what one layer would hold
  *  edges    none
  *  error    none: a definition
- *  source   Volition 2018, "Order Independent Transparency" (GDC talk), composite shader in the
- *           appendix */
+ *  source   Kircher 2018, "Rendering Technology in Agents of Mayhem", composite shader in
+ *           the appendix */
 HDRP_FN hdrp_oit_targets hdrp_oit_talk_merge(hdrp_oit_targets a, hdrp_oit_targets b)
 {
     hdrp_oit_targets t = hdrp_oit_merge(a, b);
@@ -541,6 +543,68 @@ HDRP_FN hdrp_oit_targets hdrp_oit_layer_export(hdrp_oit_fragment f, float throug
 HDRP_FN hdrp_v3 hdrp_oit_layer_composite(hdrp_oit_targets t, hdrp_v3 behind, float scale)
 {
     return hdrp_i_oit_composite(t, behind, scale, 1.0f);
+}
+
+/* >>front
+ * The nearest fragment exactly, the rest as in the recommended mode: two passes, of which the first
+ * writes depth only. */
+
+/* What a fragment shader writes, and what the pixel then holds. */
+struct hdrp_oit_front_targets {
+    hdrp_v4 front; /* the nearest fragment and emission before it, w its alpha: added */
+    hdrp_v4 accum; /* the others, as in hdrp_oit_targets */
+    hdrp_v4 light;
+};
+HDRP_TYPEDEF(hdrp_oit_front_targets)
+
+/** What a fragment adds to the targets where the nearest one is kept apart.
+ *  f          valid
+ *  nearest_m  any    least depth of what covers in the pixel: hdrp_oit_range_export, blended
+ *  scale      any    as for hdrp_oit_export
+ *  returns    valid
+ *  edges      what is before the nearest depth counts as at it; NaN: nothing is nearest
+ *  error      none: a selection of hdrp_oit_export
+ *  source     own: one exact layer and a weighted tail
+ *  note       fragments at exactly the nearest depth are added up */
+HDRP_FN hdrp_oit_front_targets hdrp_oit_front_export(hdrp_oit_fragment f, float nearest_m,
+                                                     float scale)
+{
+    hdrp_oit_front_targets t;
+    float is_front = f.z_view <= nearest_m ? 1.0f : 0.0f;
+    float s = hdrp_i_oit_scale(scale) * is_front;
+    hdrp_v3 color = hdrp_v3_scale(hdrp_v3_add(f.premultiplied, f.emission), s);
+    float limit = hdrp_i_oit_limit(hdrp_v3_max_component(color), 0.0f);
+    hdrp_oit_fragment rest = f;
+    hdrp_oit_targets tail;
+    rest.alpha = f.alpha * (1.0f - is_front);
+    rest.premultiplied = hdrp_v3_scale(f.premultiplied, 1.0f - is_front);
+    rest.emission = hdrp_v3_scale(f.emission, 1.0f - is_front);
+    tail = hdrp_oit_export(rest, scale);
+    t.front = hdrp_v4_from_v3(hdrp_v3_scale(color, limit), f.alpha * is_front);
+    t.accum = tail.accum;
+    t.light = tail.light;
+    return t;
+}
+
+/** Colour of a pixel whose nearest fragment was kept apart.
+ *  t        any    what its targets hold
+ *  behind   any    colour of what is opaque
+ *  scale    any    as for the export
+ *  returns  any    finite where behind is
+ *  edges    as hdrp_oit_composite; coverage that adds up to more than 1 is brought back to it, and
+ *           its colours with it
+ *  error    none: a definition on hdrp_oit_composite
+ *  source   Porter and Duff 1984, "Compositing Digital Images", over */
+HDRP_FN hdrp_v3 hdrp_oit_front_composite(hdrp_oit_front_targets t, hdrp_v3 behind, float scale)
+{
+    hdrp_oit_targets tail;
+    float covered = hdrp_clamp(t.front.w, 0.0f, HDRP_OIT_LIGHT_MAX);
+    float share = 1.0f / (hdrp_i_oit_scale(scale) * hdrp_max(covered, 1.0f));
+    hdrp_v3 front = hdrp_v3_scale(hdrp_i_oit_light(hdrp_v3_from_v4(t.front)), share);
+    tail.accum = t.accum;
+    tail.light = t.light;
+    return hdrp_v3_mad(front, hdrp_oit_composite(tail, behind, scale),
+                       1.0f - hdrp_min(covered, 1.0f));
 }
 
 /* >>wavelet
@@ -656,8 +720,8 @@ HDRP_TYPEDEF(hdrp_oit_moments)
  *  returns  valid
  *  edges    alpha above 1 - 2^-16 absorbs as that does
  *  error    none: hdrp_oit_moments_transmittance states it
- *  source   Muenstermann et al. 2018, "Moment-Based Order-Independent Transparency", eq. 4, with
- *           the nearest fragment apart */
+ *  source   Muenstermann et al. 2018, "Moment-Based Order-Independent Transparency", section on
+ *           power moments; the nearest fragment apart */
 HDRP_FN hdrp_oit_moments hdrp_oit_moments_insert(hdrp_oit_fragment f, hdrp_oit_place place)
 {
     hdrp_oit_moments m;
@@ -784,9 +848,9 @@ HDRP_FN float hdrp_i_oit_biased(float sum, float inverse, float even, float bias
  *  edges    1 for the nearest fragment; NaN counts as nothing that absorbs
  *  error    none: an estimate; tests/oit measures pixels against sorting
  *  source   Muenstermann et al. 2018, "Moment-Based Order-Independent Transparency", algorithms for
- *           four and six power moments with the bias of 32-bit floats; here overestimation is half
- *           of what is not the fragment's own, where theirs is a quarter of all: the error on mixed
- *           opacity falls from .029 to .017 with six moments */
+ *           four and six power moments with the bias of 32-bit floats
+ *  note     overestimation is half of what is not the fragment's own, where theirs is a quarter of
+ *           all: that is a third or more of the error less */
 HDRP_FN float hdrp_oit_moments_transmittance(hdrp_oit_moments m, hdrp_oit_fragment f,
                                              hdrp_oit_place place, hdrp_u32 count)
 {
@@ -816,6 +880,7 @@ extern "C" {
 
 typedef enum hdrp_oit_mode {
     HDRP_OIT_MODE_RECOMMENDED = 0, /* one pass: hdrp_oit_export */
+    HDRP_OIT_MODE_FRONT,           /* two passes, the first writes depth: hdrp_oit_front_export */
     HDRP_OIT_MODE_WAVELET,         /* three passes: the best */
     HDRP_OIT_MODE_MOMENTS_6,       /* three passes */
     HDRP_OIT_MODE_MOMENTS_4,       /* three passes */
@@ -832,6 +897,7 @@ typedef enum hdrp_oit_mode {
 typedef enum hdrp_oit_format {
     HDRP_OIT_FORMAT_RGBA32F = 0,
     HDRP_OIT_FORMAT_RG32F,
+    HDRP_OIT_FORMAT_R32F,
     HDRP_OIT_FORMAT_RGBA16F,
     HDRP_OIT_FORMAT_R16F,
     HDRP_OIT_FORMAT_R11G11B10F,
@@ -902,7 +968,7 @@ HDRP_API uint32_t hdrp_oit_bytes_per_pixel(hdrp_oit_mode mode, hdrp_oit_precisio
 
 /** Passes over the fragments of a mode.
  *  mode     any  HDRP_OIT_MODE_...
- *  returns  1 or 3; 0 for a mode that does not exist
+ *  returns  [0,3] 0 for a mode that does not exist
  *  edges    none */
 HDRP_API uint32_t hdrp_oit_pass_count(hdrp_oit_mode mode);
 
@@ -955,8 +1021,8 @@ HDRP_API void hdrp_oit_blend_rows(hdrp_oit_image* image, uint32_t pass,
  *  row_end    any  after the last row; limited to the height
  *  returns    HDRP_OK, or an error, with image untouched
  *  errors     HDRP_ERROR_NULL_POINTER, HDRP_ERROR_BAD_ARGUMENT for another mode or precision, and
- *             for a mode of three passes: there fragments of both resolutions go through the
- *             targets of absorption first, and only sums of the last pass could be added
+ *             for a mode of several passes: what is nearest and what absorbs is known for one
+ *             resolution only
  *  range      rows: disjoint ranges may be added at the same time
  *  note       targets are not rounded again: a composite shader adds in registers */
 HDRP_API hdrp_result hdrp_oit_merge_rows(hdrp_oit_image* image, const hdrp_oit_image* low,
@@ -1047,12 +1113,18 @@ HDRP_API uint32_t hdrp_oit_describe_targets(hdrp_oit_mode mode, hdrp_oit_precisi
 {
     int layered = hdrp_i_oit_is_layered(mode);
     int compact = precision == HDRP_OIT_PRECISION_COMPACT;
-    uint32_t i, n = 0u, pass = layered ? 2u : 0u;
+    int front = mode == HDRP_OIT_MODE_FRONT;
+    uint32_t i, n = 0u, pass = layered ? 2u : front ? 1u : 0u;
     if (!targets || !hdrp_i_oit_exists(mode, precision)) {
         return 0u;
     }
     if (layered) {
         n = hdrp_i_oit_absorbing(mode, targets);
+    }
+    if (front) {
+        targets[n++] =
+            hdrp_i_oit_target(HDRP_OIT_FORMAT_R32F, HDRP_OIT_BLEND_MAX, HDRP_OIT_BLEND_MAX, 0u);
+        targets[n++] = hdrp_i_oit_sum(HDRP_OIT_FORMAT_RGBA16F, 1u);
     }
     targets[n++] = hdrp_i_oit_sum(HDRP_OIT_FORMAT_RGBA16F, pass);
     if (mode == HDRP_OIT_MODE_TALK) {
@@ -1074,7 +1146,7 @@ HDRP_API uint32_t hdrp_oit_describe_targets(hdrp_oit_mode mode, hdrp_oit_precisi
 
 HDRP_API uint32_t hdrp_oit_bytes_per_pixel(hdrp_oit_mode mode, hdrp_oit_precision precision)
 {
-    static const uint32_t bytes[7] = {16u, 8u, 8u, 2u, 4u, 4u, 1u};
+    static const uint32_t bytes[8] = {16u, 8u, 4u, 8u, 2u, 4u, 4u, 1u};
     hdrp_oit_target targets[HDRP_OIT_TARGETS_MAX];
     uint32_t i, sum = 0u, n = hdrp_oit_describe_targets(mode, precision, targets);
     for (i = 0u; i < n; ++i) {
@@ -1087,6 +1159,7 @@ HDRP_API uint32_t hdrp_oit_pass_count(hdrp_oit_mode mode)
 {
     return !hdrp_i_oit_exists(mode, HDRP_OIT_PRECISION_NATIVE) ? 0u
            : hdrp_i_oit_is_layered(mode)                       ? 3u
+           : mode == HDRP_OIT_MODE_FRONT                       ? 2u
                                                                : 1u;
 }
 
@@ -1113,6 +1186,7 @@ static hdrp_v4 hdrp_i_oit_stored(hdrp_oit_format format, hdrp_v4 v)
         return hdrp_pack_v4_from_rgba8(hdrp_pack_rgba8_from_v4(v));
     case HDRP_OIT_FORMAT_RGBA32F:
     case HDRP_OIT_FORMAT_RG32F:
+    case HDRP_OIT_FORMAT_R32F:
         break;
     }
     return v;
@@ -1226,7 +1300,7 @@ static uint32_t hdrp_i_oit_first_color(const hdrp_oit_image* image)
     while (image->targets[i].pass < last) {
         ++i;
     }
-    return i;
+    return image->desc.mode == HDRP_OIT_MODE_FRONT ? i + 1u : i;
 }
 
 static float hdrp_i_oit_mode_weight(const hdrp_oit_desc* d, hdrp_oit_fragment f)
@@ -1282,7 +1356,7 @@ static float hdrp_i_oit_image_through(const hdrp_oit_image* image, hdrp_oit_frag
     }
 }
 
-/* What a fragment writes in the first two of three passes. */
+/* What a fragment writes in the passes before the last. */
 static void hdrp_i_oit_absorb(const hdrp_oit_image* image, uint32_t pass, hdrp_oit_fragment f,
                               size_t pixel, hdrp_v4* out)
 {
@@ -1315,7 +1389,13 @@ static void hdrp_i_oit_shade(const hdrp_oit_image* image, hdrp_oit_fragment f, s
 {
     const hdrp_oit_desc* d = &image->desc;
     hdrp_oit_targets t;
-    if (d->mode == HDRP_OIT_MODE_TALK) {
+    if (d->mode == HDRP_OIT_MODE_FRONT) {
+        float nearest = -hdrp_i_oit_texel(image, 0u, pixel)->x;
+        hdrp_oit_front_targets all = hdrp_oit_front_export(f, nearest, d->scale);
+        *out++ = all.front;
+        t.accum = all.accum;
+        t.light = all.light;
+    } else if (d->mode == HDRP_OIT_MODE_TALK) {
         t = hdrp_oit_talk_export(f, hdrp_oit_talk_settings_make(d->feather, d->exposure));
     } else if (hdrp_i_oit_is_layered(d->mode)) {
         t = hdrp_oit_layer_export(f, hdrp_i_oit_image_through(image, f, pixel), d->scale);
@@ -1409,7 +1489,7 @@ HDRP_API hdrp_result hdrp_oit_merge_rows(hdrp_oit_image* image, const hdrp_oit_i
         return HDRP_ERROR_NULL_POINTER;
     }
     if (image->desc.mode != low->desc.mode || image->desc.precision != low->desc.precision ||
-        hdrp_i_oit_is_layered(image->desc.mode)) {
+        hdrp_oit_pass_count(image->desc.mode) > 1u) {
         return HDRP_ERROR_BAD_ARGUMENT;
     }
     first = hdrp_i_oit_first_color(image);
@@ -1443,6 +1523,14 @@ HDRP_API void hdrp_oit_composite_rows(const hdrp_oit_image* image, const hdrp_v3
     hdrp_oit_mode mode = image->desc.mode;
     for (pixel = row_begin * width; pixel < end * width; ++pixel) {
         hdrp_oit_targets t = hdrp_i_oit_sums(image, pixel);
+        if (mode == HDRP_OIT_MODE_FRONT) {
+            hdrp_oit_front_targets all;
+            all.front = *hdrp_i_oit_texel(image, 1u, pixel);
+            all.accum = t.accum;
+            all.light = t.light;
+            color[pixel] = hdrp_oit_front_composite(all, behind[pixel], image->desc.scale);
+            continue;
+        }
         color[pixel] = mode == HDRP_OIT_MODE_TALK ? hdrp_oit_talk_composite(t, behind[pixel])
                        : hdrp_i_oit_is_layered(mode)
                            ? hdrp_oit_layer_composite(t, behind[pixel], image->desc.scale)

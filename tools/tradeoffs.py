@@ -536,10 +536,12 @@ them cover nothing and emit their colour times such an opacity; and behind a nea
 {opacities}
 - `recommended` is what one pass can do with two RGBA16F targets. Its weight was fitted on depths of
   1 to 200 m (tools/fit_oit.py).
+- `front` keeps the nearest layer apart, whose depth a pass before it wrote.
 - `wavelet` and `moments` know how much of each layer is seen, and so of emission. They draw three
   times. Moments need 32-bit floats; wavelets add half floats.
-- `eq7` to `2015` are published weights, `talk_weight` that of the Volition talk, all of them divided
-  by sums of weighted alpha and with emission in a target of its own; `talk` is its form as shown.
+- `eq7` to `2015` are published weights (McGuire and Bavoil 2013, McGuire 2015), `talk_weight` is that
+  of Kircher 2018, all of them divided by sums of weighted alpha and with emission in a target of its
+  own; `talk` is the latter's form as shown.
 
 Other depths, with opacities as above:
 

@@ -35,8 +35,8 @@ const size_t oit_case_count = sizeof oit_cases / sizeof *oit_cases;
 const char* oit_mode_name(hdrp_oit_mode mode)
 {
     static const char* const names[HDRP_OIT_MODE_COUNT] = {
-        "recommended", "wavelet", "moments_6", "moments_4",   "eq7", "eq8",
-        "eq9",         "eq10",    "2015",      "talk_weight", "talk"};
+        "recommended", "front", "wavelet", "moments_6", "moments_4",   "eq7",
+        "eq8",         "eq9",   "eq10",    "2015",      "talk_weight", "talk"};
     return names[mode];
 }
 
