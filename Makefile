@@ -79,6 +79,7 @@ tradeoffs: bench ## measure error and cost of every variant again, and write doc
 	@$(call compile,test) --target accuracy_record stability_record published_table
 	@$(call compile,test) --target half_record # by itself: it renews the same page
 	@python3 tools/gcn_probe.py --write
+	@python3 tools/gcn_passes.py --write
 	@$(call compile,bench) --target hdrp_render
 	@! test -d "$(ASSETS)/gltf" || python3 bench/feature_cost.py \
 	    build/bench/examples/render/hdrp_render "$(ASSETS)" bench/results

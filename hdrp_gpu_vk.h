@@ -3,8 +3,8 @@
  *
  * For an engine that has a device and a command buffer. The passes, which this header includes, are
  * in a header for each topic, with their SPIR-V at its end, made from shaders/, whose formulas are
- * those of the other headers. Vulkan 1.1 and <vulkan/...> are all
- * that is needed: every function comes from the caller's loader, none from a library.
+ * those of the other headers. Vulkan 1.1 and <vulkan/...> are all that is needed: every function
+ * comes from the caller's loader, none from a library.
  *
  *     #define HDRP_GPU_VK_IMPLEMENTATION        in one source file
  *     #include "hdrp_gpu_vk.h"
@@ -20,26 +20,48 @@
  * Each frame, where what was recorded for the same number before has been executed:
  *
  *     hdrp_gpu_vk_begin_frame(&gpu, frame_number % 2);
- *     hdrp_gpu_vk_fgd_bake(&gpu, commands, &table);       once; outside of render passes, like all
- *     hdrp_gpu_vk_build_lists(&gpu, commands, &lists, &frame);     of hdrp_gpu_vk_lists_create
+ *     hdrp_gpu_vk_build_lists(&gpu, commands, &lists, &frame);        reads depth, draw it before
+ *     ... the caller draws the GBuffer, and shadow maps: hdrp_gpu_vk_shadow_raster_of
+ *     hdrp_gpu_vk_resolve_shadows(&gpu, commands, &shadow, &mask);    reads depth, normals, maps
+ *     hdrp_gpu_vk_write_lighting(&gpu, commands, &lighting);          names all of these
+ *     hdrp_gpu_vk_classify(&gpu, commands, &lighting, &variants, &tiles);
+ *     hdrp_gpu_vk_light_deferred(&gpu, commands, &lighting, &variants, &tiles, &lit);
+ *     ... the caller draws forward and transparent surfaces: shaders/light_loop.glsl
+ *     hdrp_gpu_vk_tone_map_record(&gpu, commands, &map);
  *
- * Nothing is submitted and nothing is waited for. A pass does what a function does on the CPU:
- * hdrp_brdf_fgd_bake_rows, hdrp_cull_measure_depth, hdrp_cull_build. Each says in which layouts it
- * takes and leaves images. What it writes may have been read or written by compute and fragment
- * shaders and by copies in earlier commands of the same queue, and may be read by them in later
- * ones: the barriers for that are recorded. What it reads is for the caller to make visible to the
- * compute stage, and so is what comes from another queue or goes there.
+ * all outside of render passes. hdrp_gpu_vk_fgd_bake is for once, hdrp_gpu_vk_env_bake for when the
+ * sky changes. A pass that is not wanted is left out, here and in desc.passes; the program
+ * examples/vk_minimal.c lights a picture. Nothing is submitted and nothing is waited for.
+ *
+ * A pass does what a function does on the CPU: hdrp_cull_build, hdrp_shadow_cascades_visibility,
+ * hdrp_cull_assign_variants, hdrp_brdf_lit_eval. Each says in which layouts it takes and leaves
+ * images. What it writes may have been read or written by compute and fragment shaders and by
+ * copies in earlier commands of the same queue, and may be read by them in later ones: the barriers
+ * for that are recorded. What it reads is for the caller to make visible to the compute stage, and
+ * so is what comes from another queue or goes there.
+ *
+ * Memory: images, and buffers of shapes, lights and views, are the caller's; passes hold them until
+ * they have been executed, and structs until the call returns. What ..._create makes (lists, tiles,
+ * variants, environments) is in memory of desc.memory until ..._destroy; one of each serves all
+ * frames in flight of a queue. To resize is to make others. Memory of the host is asked for by the
+ * driver alone, through desc.allocation.
  *
  * Lists depend on no shading: a context of its own, for the family of a queue that only computes,
  * records them there while the graphics queue draws shadows. Their buffers are of exclusive
  * sharing, so that the caller hands them over with a semaphore and, between families, a pair of
- * barriers.
+ * barriers; back too, before they are built again, or there are lists for each frame in flight.
+ *
+ * What passes need beside Vulkan 1.1 and a queue that computes; hdrp_gpu_vk_missing checks it:
+ *
+ *     lists, blockers   10 storage buffers of a shader
+ *     lighting          8 of them, 13 sampled images, 2 storage images
+ *     environments      18432 bytes of memory that a group shares
+ *     all but lists, blockers and depth: the feature shaderStorageImageWriteWithoutFormat
  *
  * hdrp_gpu_vk_lists_create needs the bodies of hdrp_cull.h: HDRP_CULL_IMPLEMENTATION in one file.
  *
  * Pipelines, sets and push constants of VK_PIPELINE_BIND_POINT_COMPUTE are not what they were after
- * a pass. Memory of the host is asked for by the driver alone, through desc.allocation. An
- * hdrp_gpu_vk is not locked: threads that record at the same time need one each.
+ * a pass. An hdrp_gpu_vk is not locked: threads that record at the same time need one each.
  *
  * >>index of the functions, without hdrp_gpu_vk_ (written by tools/api_check.py --write)
  *   context: missing init destroy begin_frame

@@ -241,7 +241,7 @@ static void measure(uint32_t lights, int rounds, uint32_t height, FILE* csv)
         qsort(w->ms, (size_t)rounds, sizeof w->ms[0], by_time);
         printf("%5u  %-30s %9.3f %9.3f\n", lights, w->name, w->ms[rounds / 2], w->ms[0]);
         if (csv) {
-            fprintf(csv, "%u,%u,%s,%.4f,%.4f\n", height, lights, w->name, w->ms[rounds / 2],
+            fprintf(csv, "%u,%u,\"%s\",%.4f,%.4f\n", height, lights, w->name, w->ms[rounds / 2],
                     w->ms[0]);
         }
     }

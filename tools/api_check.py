@@ -30,7 +30,7 @@ DEPENDENCIES = {
     "light": "math",
     "brdf_lobes": "math",
     "brdf": "math brdf_lobes",
-    "oit": "math",
+    "oit": "math pack",
     "sss": "math",
     "env_image": "math",
     "env": "math env_image",

@@ -1,14 +1,19 @@
 #!/usr/bin/env python3
 """What the passes of hdrp_gpu_vk.h cost on AMD GPUs, without one:
 
-    gcn_passes.py [PASS...]   a table for each family of GPUs
-    gcn_passes.py --check     fails where a pass takes more registers than it may
-    gcn_passes.py --write     records the table in docs/gcn_passes.md
+    gcn_passes.py [PASS...]           a table for each family of GPUs
+    gcn_passes.py --check [PASS...]   fails where a pass takes more registers than it may, and where
+                                      the recorded numbers are no longer right; bonaire alone
+    gcn_passes.py --write             records them in bench/results
 
 Registers, local memory (LDS) and occupancy of every embedded shader, and of deferred lighting in
-variants from simple to complex, with what each feature adds. The words come from the headers; see
-gcn_probe.py for the driver that compiles them. Exit status 77 where something is missing.
+variants from simple to complex. The words come from the headers; gcn_probe.py says which driver
+compiles them, and why any other versions of it are skipped (exit status 77).
+tools/tradeoffs.py shows what is recorded, with what each feature adds.
 """
+import argparse
+import csv
+import io
 import pathlib
 import re
 import struct
@@ -84,8 +89,8 @@ def bindings_of(words):
     return "".join(letters.get(k, "b") for k in range(max(letters) + 1))
 
 
-def embedded_shaders():
-    for path in sorted(hdrp_api.ROOT.glob("hdrp_gpu_vk*.h")):
+def embedded_shaders(root):
+    for path in sorted(root.glob("hdrp_gpu_vk*.h")):
         for match in WORDS.finditer(path.read_text(encoding="utf-8")):
             words = [int(word, 16) for word in match["words"].split(",") if word.strip()]
             yield Embedded(match["name"], words)
@@ -99,8 +104,8 @@ class Compiled:
         self.shader = gcn_probe.gcn_shaders.Shader(name, mask=f"{mask} {bindings}")
 
 
-def compiled_shaders(folder, wanted):
-    for shader in embedded_shaders():
+def compiled_shaders(root, folder, wanted):
+    for shader in embedded_shaders(root):
         if wanted and shader.name not in wanted:
             continue
         path = folder / f"{shader.name}.spv"
@@ -114,73 +119,114 @@ def compiled_shaders(folder, wanted):
 
 SHOWN = {"instructions": "instructions", "vgprs": "VGPRs", "sgprs": "SGPRs",
          "lds_bytes": "LDS, bytes", "waves_per_simd": "waves", "spilled_registers": "spilled"}
-# Vector registers on bonaire, at most. The aim for lists is 48 throughout.
+COLUMNS = ["name", "family", *SHOWN]
+NOTES = """\
+deferred: one module; punctual is the Standard material with points and spots, and what follows a
++ is a feature more. sun: directional lights, mask: their shadow image, sky: the environment"""
+CHECKED = "bonaire"  # the family for which --check has time
+# Vector registers on it, at most. The aim for lists is 48 throughout.
 LIMITS = {"classify": 48, "dispatch": 48, "cull_project": 84, "cull_coarse": 48, "cull_tiles": 48,
-          "cull_pixels": 48, "cull_clusters": 68, "depth": 48, "deferred:punctual": 48,
+          "cull_pixels": 48, "cull_clusters": 52, "depth": 48, "deferred:punctual": 48,
           "deferred:punctual+sun+mask+sky": 64}
-DOCUMENT = hdrp_api.ROOT / "docs" / "gcn_passes.md"
-INTRODUCTION = """# Registers of the GPU passes
-
-Written by `tools/gcn_passes.py --write`; {versions}. Deferred lighting is one module; each of its
-rows is a variant: `punctual` is the Standard material with points and spots, and what follows a +
-is a feature more. `sun` is directional lights, `mask` their shadow image, `sky` the environment.
-"""
 
 
-def measured_rows(bench, folder, wanted):
-    """family -> [(name, numbers)]"""
-    compiled = list(compiled_shaders(folder, wanted))
-    return {family: [(c.shader.name, measured[c.shader.name].numbers()) for c in compiled]
-            for family, measured in bench.ask_all(compiled).items()}
+def measured_rows(bench, wanted):
+    """A row for each shader and family."""
+    compiled = list(compiled_shaders(bench.root, bench.folder, wanted))
+    measured = bench.ask_all(compiled)
+    return [dict({column: measured[family][c.shader.name].numbers()[column] for column in SHOWN},
+                 name=c.shader.name, family=family)
+            for c in compiled for family in bench.families]
 
 
 def print_rows(rows):
-    for family, shaders in rows.items():
+    for family in gcn_probe.FAMILIES:
         print(f"\n{family:<34}" + "".join(f"{head:>14}" for head in SHOWN.values()))
-        for name, numbers in shaders:
-            print(f"{name:<34}" + "".join(f"{numbers[column]:>14}" for column in SHOWN))
+        for row in rows:
+            if row["family"] == family:
+                print(f"{row['name']:<34}" + "".join(f"{row[column]:>14}" for column in SHOWN))
 
 
 def document(versions, rows):
-    lines = [INTRODUCTION.format(versions=versions)]
-    for family, shaders in rows.items():
-        plain = dict(shaders).get("deferred:punctual")
-        lines += [f"## {family}", "", f"| pass | {' | '.join(SHOWN.values())} | VGPRs added |",
-                  "|---|" + "---|" * (len(SHOWN) + 1)]
-        for name, numbers in shaders:
-            added = ""
-            if name.startswith("deferred:punctual+") and plain:
-                added = f"{numbers['vgprs'] - plain['vgprs']:+d}"
-            values = " | ".join(str(numbers[column]) for column in SHOWN)
-            lines.append(f"| {name} | {values} | {added} |")
-        lines.append("")
-    return "\n".join(lines)
+    text = io.StringIO()
+    text.write("".join(f"# {line}\n" for line in [versions, *NOTES.splitlines()]))
+    writer = csv.DictWriter(text, COLUMNS, lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    return text.getvalue()
+
+
+def recorded_path(versions, results):
+    name = gcn_probe.recorded_path(versions, results).name
+    return pathlib.Path(results) / name.replace("gcn_", "gcn_passes_")
 
 
 def too_many(rows):
     """Passes that take more registers than they may."""
-    return [f"{name}: {numbers['vgprs']} vector registers on bonaire, at most {LIMITS[name]}"
-            for name, numbers in rows["bonaire"]
-            if name in LIMITS and numbers["vgprs"] > LIMITS[name]]
+    return [f"{row['name']}: {row['vgprs']} vector registers on {CHECKED}, at most "
+            f"{LIMITS[row['name']]}" for row in rows
+            if row["family"] == CHECKED and row["vgprs"] > LIMITS.get(row["name"], row["vgprs"])]
+
+
+def lines_of(text, wanted):
+    """{pass: line} of the family that is checked, and of these passes."""
+    found = (line.split(",") for line in text.splitlines() if not line.startswith("#"))
+    return {cells[0]: ",".join(cells) for cells in found
+            if cells[1] == CHECKED and (not wanted or cells[0].split(":")[0] in wanted)}
+
+
+def check(bench, results, wanted):
+    versions = bench.versions()
+    path = recorded_path(versions, results)
+    if not path.exists():
+        raise gcn_probe.Skip(f"no numbers are recorded for {versions}")
+    recorded = path.read_text(encoding="utf-8")
+    if not recorded.startswith(f"# {versions}\n"):
+        raise gcn_probe.Skip(f"{path.name} is for other versions; this is {versions}")
+    rows = measured_rows(bench, wanted)
+    problems = too_many(rows)
+    old, new = (lines_of(text, wanted) for text in (recorded, document(versions, rows)))
+    for name in sorted({*old, *new}):
+        if old.get(name) != new.get(name):
+            problems += [f"recorded: {old.get(name, 'nothing')}\nmeasured: {new.get(name, 'nothing')}"]
+    if problems:
+        print("\n".join(problems))
+        print(f"{path.name}: if that is meant, tools/gcn_passes.py --write")
+        return 1
+    print(f"{path.name}: {len(new)} passes are as measured on {CHECKED}, {versions}")
+    return 0
+
+
+def write(bench, results):
+    path = recorded_path(bench.versions(), results)
+    path.write_text(document(bench.versions(), measured_rows(bench, [])), encoding="utf-8")
+    print(f"wrote {path}")
+    return 0
 
 
 def main():
-    wanted = [word for word in sys.argv[1:] if not word.startswith("--")]
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("passes", nargs="*", metavar="PASS")
+    action = parser.add_mutually_exclusive_group()
+    action.add_argument("--check", action="store_true")
+    action.add_argument("--write", action="store_true")
+    parser.add_argument("--include", type=pathlib.Path, default=hdrp_api.ROOT,
+                        help="folder of the headers")
+    parser.add_argument("--results", type=pathlib.Path, default=gcn_probe.RESULTS,
+                        help="folder of the recorded numbers")
+    options = parser.parse_args()
     try:
         with tempfile.TemporaryDirectory() as folder:
-            bench = gcn_probe.Bench(folder)
-            rows = measured_rows(bench, pathlib.Path(folder), wanted)
-            versions = bench.versions()
+            bench = gcn_probe.Bench(folder, options.include, [CHECKED] if options.check else None)
+            if options.check:
+                return check(bench, options.results, options.passes)
+            if options.write:
+                return write(bench, options.results)
+            print_rows(measured_rows(bench, options.passes))
     except gcn_probe.Skip as missing:
         print(f"skipped: {missing}")
         return gcn_probe.SKIPPED
-    if "--write" in sys.argv:
-        DOCUMENT.write_text(document(versions, rows), encoding="utf-8")
-    if "--check" in sys.argv:
-        problems = too_many(rows)
-        print("\n".join(problems) if problems else "all passes keep within their registers")
-        return 1 if problems else 0
-    print_rows(rows)
     return 0
 
 

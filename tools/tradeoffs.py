@@ -8,7 +8,8 @@ with what is committed. tools/tradeoffs_charts.py draws the same numbers.
 
 Which functions are alternatives to each other is said in tools/tradeoffs_topics.csv, and what to
 think of them in TOPICS below. Where two CPUs have results, the one that sorts first is shown; where
-none has those of bench_cull, the page has no section on light culling.
+none has those of bench_cull, the page has no section on light culling. What bench_gpu measured is
+shown of every device that has results.
 """
 import csv
 import pathlib
@@ -88,6 +89,21 @@ CULL_TAKE = {
 CULL_MAIN = ("grid 17x9x24", "grid 17x9x24, fast", "grid 17x9x24, naive", "clusters 32x32x64",
              "tiles 16x16, no pixels", "tiles 16x16", "tiles 16x16, blocks")
 
+# What bench_gpu writes.
+DEVICE_COLUMNS = ("height", "lights", "way", "median_ms", "least_ms")
+PLAIN_VARIANT = "deferred:punctual"  # the one that others are compared with
+# Lagarde and Golubev 2018, "Tile / Cluster Performance" and "Classification Performance": ms on a
+# PlayStation 4 at 1920x1080 with 10, 50, 100 and 500 punctual lights.
+TALK_LIGHTS = ("10", "50", "100", "500")
+TALK_TIMES = (
+    ("lists in total", "0.956", "1.007", "1.096", "2.647"),
+    ("screen bounds", "0.167", "0.170", "0.171", "0.170"),
+    ("big tiles", "0.026", "0.050", "0.092", "0.391"),
+    ("lists of tiles", "0.360", "0.370", "0.388", "0.702"),
+    ("lists of clusters", "0.403", "0.417", "0.445", "1.384"),
+    ("deferred lighting of a simple material, one shader", "0.665", "1.033", "0.972", "2.575"),
+    ("the same by variants", "0.468", "0.669", "0.555", "1.228"))
+
 
 def rows(path):
     """The rows of a CSV file without its remarks; none when there is no such file."""
@@ -155,6 +171,21 @@ def cull_rows(path):
     return found
 
 
+def device_rows(path):
+    """The results of bench_gpu; ends the program where they are not what it writes."""
+    found = rows(path)
+    if not remarks(path) or not remarks(path)[0].startswith("device: "):
+        sys.exit(f"tradeoffs: {path.name}: does not begin with a remark that names the device")
+    for row in found:
+        if tuple(row) != DEVICE_COLUMNS or None in row.values():
+            sys.exit(f"tradeoffs: {path.name}: the columns are not {', '.join(DEVICE_COLUMNS)}")
+        for name in set(DEVICE_COLUMNS) - {"way"}:
+            if not re.fullmatch(r"\d+(\.\d+)?", row[name]):
+                sys.exit(f"tradeoffs: {path.name}: {row['way']}: {name} is no number but "
+                         f"{row[name]!r}")
+    return found
+
+
 @dataclass
 class Variant:
     """What is known of one function. Strings are shown as they are recorded."""
@@ -175,18 +206,22 @@ class Variant:
 class Data:
     def __init__(self):
         self.cpu_file = first_result("cpu_*.csv")
-        self.gcn_file = first_result("gcn_*.csv")
+        self.gcn_file = first_result("gcn_mesa-*.csv")
+        self.passes_file = first_result("gcn_passes_*.csv")
+        self.devices = {path: device_rows(path) for path in sorted(RESULTS.glob("gpu_*.csv"))}
         self.features_cpu_file = first_result("features_cpu_*.csv")
         self.features_render_file = first_result("features_render_*.csv")
         self.published = rows(ROOT / "tests/published/recorded.csv")
         self.prefilters = rows(first_result("prefilters_cpu_*.csv"))
         self.cull_file = first_result("cull_cpu_*.csv")
         self.cull = cull_rows(self.cull_file)
+        self.oit = rows(ROOT / "tests/oit/recorded.csv")
         self.recorded_file = ROOT / "tests/accuracy/recorded.csv"
         self.recorded = {row["id"]: row for row in rows(self.recorded_file)}
         self.half = {row["id"]: row for row in rows(ROOT / "tests/accuracy/half.csv")}
         self.cpu = rows(self.cpu_file)
         self.gcn = rows(self.gcn_file)
+        self.passes = {(row["name"], row["family"]): row for row in rows(self.passes_file)}
         self.features_cpu = rows(self.features_cpu_file)
         self.features_render = rows(self.features_render_file)
         self.variants = [self.variant(**row) for row in rows(ROOT / "tools/tradeoffs_topics.csv")]
@@ -393,15 +428,144 @@ def culling(data):
                           choice=cull_choice(data), ways=cull_ways(data), times=cull_times(data))
 
 
+def pass_cells(data, name):
+    """All of a pass on the first family, registers and waves on the others."""
+    first, *others = (data.passes[name, family] for family in FAMILIES)
+    return [*(first[column] for column in ("instructions", "vgprs", "sgprs", "lds_bytes",
+                                           "waves_per_simd", "spilled_registers")),
+            *(row[column] for row in others for column in ("vgprs", "waves_per_simd"))]
+
+
+PASS_HEADS = [f"{FAMILIES[0]} instructions", "VGPRs", "SGPRs", "LDS, bytes", "waves", "spilled",
+              *(head for family in FAMILIES[1:] for head in (f"{family} VGPRs", "waves"))]
+
+
+def pass_names(data):
+    return list(dict.fromkeys(name for name, _ in data.passes))
+
+
+def passes_table(data):
+    lines = [[code(name), *pass_cells(data, name)] for name in pass_names(data) if ":" not in name]
+    return table(["pass", *PASS_HEADS], lines, "l" + "r" * len(PASS_HEADS))
+
+
+def added(data, name, column):
+    """What a variant has more than the plain one, a blank where it is not that and more."""
+    if not name.startswith(f"{PLAIN_VARIANT}+"):
+        return ""
+    own, plain = (int(data.passes[which, FAMILIES[0]][column]) for which in (name, PLAIN_VARIANT))
+    return f"{own - plain:+d}"
+
+
+def variants_table(data):
+    heads = ["variant", "adds instructions", "adds VGPRs", *PASS_HEADS]
+    lines = [[code(name.split(":")[1]), added(data, name, "instructions"),
+              added(data, name, "vgprs"), *pass_cells(data, name)]
+             for name in pass_names(data) if ":" in name]
+    return table(heads, lines, "l" + "r" * (len(heads) - 1))
+
+
+def device_tables(data):
+    """Milliseconds over the number of lights, for each device with results."""
+    text = []
+    for path, found in data.devices.items():
+        counts = sorted({row["lights"] for row in found}, key=int)
+        times = {(row["height"], row["way"], row["lights"]): row["median_ms"] for row in found}
+        lines = [[height, code(way), *(shown(times.get((height, way, count), ""))
+                                       for count in counts)]
+                 for height, way in dict.fromkeys((row["height"], row["way"]) for row in found)]
+        text.append(f"{remarks(path)[0][len('device: '):]}:\n\n"
+                    + table(["rows of pixels", "way", *counts], lines, "rl" + "r" * len(counts)))
+    return "\n".join([DEVICES, *text, ""]) if text else ""
+
+
+def gpu_passes(data):
+    """The section on passes; nothing where they have not been measured."""
+    if not data.passes:
+        return ""
+    talk = table(["ms", *TALK_LIGHTS], [list(line) for line in TALK_TIMES],
+                 "l" + "r" * len(TALK_LIGHTS))
+    return PASSES.format(passes=passes_table(data), variants=variants_table(data),
+                         devices=device_tables(data), talk=talk)
+
+
+def oit_lines(data, cases, precision="native"):
+    """The error of each mode on some cases of random pixels."""
+    found = {(row["mode"], row["case"]): row for row in data.oit if row["precision"] == precision}
+    lines = []
+    for mode in dict.fromkeys(row["mode"] for row in data.oit):
+        some = found[mode, cases[0]]
+        lines.append([mode, some["passes"], some["bytes_per_pixel"],
+                      *(shown(found[mode, case]["rms"]) for case in cases)])
+    return lines
+
+
+def transparency(data):
+    """The section on transparency without sorting; nothing where it has not been measured."""
+    if not data.oit:
+        return ""
+    heads = ["mode", "passes", "bytes per pixel"]
+    tables = {name: table(heads + titles, oit_lines(data, cases, precision),
+                          "lrr" + "r" * len(cases))
+              for name, (titles, cases, precision) in OIT_TABLES.items()}
+    return TRANSPARENCY.format(**tables)
+
+
+# Of each table: heads of columns, cases, and the precision of targets.
+OIT_TABLES = {
+    "opacities": (["0.05 to 0.3", "0.05 to 0.95", "0.8 to 0.99", "only adds", "half of it adds",
+                   "behind 0.99"],
+                  ["low", "mixed", "high", "additive", "half_emissive", "front_99"], "native"),
+    "depths": ([f"{a} {d} m" for d in ("1 to 10", "0.1 to 1000") for a in ("low", "mixed", "high")],
+               [f"{a}_{d}" for d in ("1_10", "0.1_1000") for a in ("low", "mixed", "high")],
+               "native"),
+    "counts": (["low", "mixed", "high", "-10 stops", "-5 stops", "+5 stops", "+10 stops"],
+               ["low_32", "mixed_32", "high_32", "stops_-10", "stops_-5", "stops_5", "stops_10"],
+               "native"),
+    "compact": (["0.05 to 0.3", "0.05 to 0.95", "0.8 to 0.99", "only adds", "half of it adds"],
+                ["low", "mixed", "high", "additive", "half_emissive"], "compact"),
+}
+
+TRANSPARENCY = """## Transparency without sorting
+
+The modes of `hdrp_oit.h` against sorting: root mean square errors of linear RGB in [0,1] on random
+pixels of tests/oit, 2 to 12 layers between 1 and 200 m in no order, blended as hardware rounds.
+Passes are those over transparent surfaces. By opacity of the layers; where all of them or half of
+them cover nothing and emit their colour times such an opacity; and behind a nearest layer of 0.99:
+
+{opacities}
+- `recommended` is what one pass can do with two RGBA16F targets. Its weight was fitted on depths of
+  1 to 200 m (tools/fit_oit.py).
+- `front` keeps the nearest layer apart, whose depth a pass before it wrote.
+- `wavelet` and `moments` know how much of each layer is seen, and so of emission. They draw three
+  times. Moments need 32-bit floats; wavelets add half floats.
+- `eq7` to `2015` are published weights (McGuire and Bavoil 2013, McGuire 2015), `talk_weight` is that
+  of Kircher 2018, all of them divided by sums of weighted alpha and with emission in a target of its
+  own; `talk` is the latter's form as shown.
+
+Other depths, with opacities as above:
+
+{depths}
+Up to 32 layers; and colours 2^-10 to 2^10 times as bright, relative to that:
+
+{counts}
+Light in R11G11B10F and coverage in R8 where the first table has RGBA16F for both. What only adds
+is then rounded at each layer:
+
+{compact}
+"""
+
+
 def document(data):
     topics = "\n".join(topic_section(topic, variants)
                        for topic, variants in data.topics().items())
     return TEMPLATE.format(gpu=GPU, minute=minute(data), topics=topics, lit=features_table(data),
                            pictures=pictures_table(data), culling=culling(data),
+                           gpu_passes=gpu_passes(data), transparency=transparency(data),
                            peers=peers(data), published=published(data), skies=skies(data),
                            formulas=every_formula(data),
                            remarks="\n".join(f"- {remark}" for path in (
-                               data.recorded_file, data.cpu_file, data.gcn_file,
+                               data.recorded_file, data.cpu_file, data.gcn_file, data.passes_file,
                                data.features_cpu_file, data.features_render_file, data.cull_file)
                                for remark in remarks(path)))
 
@@ -439,6 +603,33 @@ Milliseconds in total over the number of lights; `naive`, for comparison, tests 
 every cell:
 
 {times}
+"""
+
+PASSES = """## Passes on the GPU
+
+What the compute shaders in `hdrp_gpu_vk.h` take of an AMD GPU, as Mesa compiles them. *VGPRs* and
+*SGPRs* are registers of a thread and of a wave, *LDS* is the local memory of a group, *waves* are
+those that fit a SIMD at the same time, *spilled* are registers that went to memory. A test fails
+when a number of bonaire moves, and when a pass takes more registers than it was made for.
+
+{passes}
+Deferred lighting is one module and these are its variants, by specialisation. *punctual* is the
+Standard material with points and spots, what follows a + is a feature more, and *adds* is what it
+costs on bonaire: directional lights (*sun*), their resolved shadows (*mask*), the environment (*sky*),
+shadows of lights in lists (*atlas*), lists in slices of depth, light below surfaces written apart
+(*split*). A tile runs the first variant that has what it needs: it pays for what is in it.
+
+{variants}
+{devices}The talk times the same passes on a PlayStation 4, whose GPU is of bonaire's generation, at
+1920x1080 in a scene of its own. It builds tiles and clusters each frame, where here a frame chooses.
+Its scene and its device are others: how the numbers grow with the lights, and what variants
+save, can be compared, milliseconds cannot. It gives no registers of these passes.
+
+{talk}
+"""
+
+DEVICES = """Milliseconds of the building of lists over the number of lights, projection and depth included, in
+the street of the section above, by timestamps of the device: medians.
 """
 
 TEMPLATE = """# Trade-offs
@@ -482,7 +673,7 @@ not. Times of equal work differ by up to a fifth from run to run; errors do not.
 ![Image error against milliseconds](images/tradeoffs_render.svg)
 
 {pictures}
-{culling}## Skies
+{culling}{gpu_passes}{transparency}## Skies
 
 GGX lobes and irradiance of a sky against brute force, relative to what is right, and one core's time
 for a whole map.

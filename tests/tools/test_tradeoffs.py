@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""The section on light culling shows what bench_cull wrote, and refuses what it did not write."""
+"""The sections on light culling and on passes show what was recorded, and refuse what was not."""
 import contextlib
 import hashlib
 import io
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -30,6 +31,13 @@ tradeoffs_charts.IMAGES = pathlib.Path(sys.argv[3])
 tradeoffs_charts.draw_culling(tradeoffs.cull_rows(pathlib.Path(sys.argv[2])))
 """
 
+DEVICE = """# device: Test 9000, driver 7
+height,lights,way,median_ms,least_ms
+1080,10,"clusters, no depth",0.0711,0.06
+1080,500,"clusters, no depth",0.123456,0.11
+1080,500,tiles,0.25,0.24
+"""
+
 
 def results():
     """A file of results. A way has its own numbers, a larger picture other visits than them all."""
@@ -46,25 +54,21 @@ def results():
     return "\n".join(lines) + "\n"
 
 
-class Culling(unittest.TestCase):
+class Page(unittest.TestCase):
+    """A folder of results and a page that are for this test alone."""
+
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
-        self.file = self.folder / "cull_cpu_amd-test-7.csv"
         self.page = self.folder / "tradeoffs.md"
         for path in tradeoffs.RESULTS.glob("*.csv"):
-            if not path.name.startswith("cull_cpu_"):
+            if not path.name.startswith(("cull_cpu_", "gpu_")):
                 shutil.copy(path, self.folder)
         for name, value in (("RESULTS", self.folder), ("DOCUMENT", self.page)):
             patch = mock.patch.object(tradeoffs, name, value)
             patch.start()
             self.addCleanup(patch.stop)
-
-    def write(self, old="", new="", count=1):
-        text = results()
-        self.assertIn(old, text, "the test changes a text that is not there")
-        self.file.write_text(text.replace(old, new, count) if old else text)
 
     def run_tool(self, *arguments):
         """What the program ends with: None when it is content."""
@@ -75,6 +79,17 @@ class Culling(unittest.TestCase):
             except SystemExit as end:
                 return end.code
         return None
+
+
+class Culling(Page):
+    def setUp(self):
+        super().setUp()
+        self.file = self.folder / "cull_cpu_amd-test-7.csv"
+
+    def write(self, old="", new="", count=1):
+        text = results()
+        self.assertIn(old, text, "the test changes a text that is not there")
+        self.file.write_text(text.replace(old, new, count) if old else text)
 
     def section(self):
         found = tradeoffs.cull_rows(self.file)
@@ -192,6 +207,85 @@ class Culling(unittest.TestCase):
             named = 0 if way.endswith(", fast") else 2
             self.assertEqual(charts[0].count(f"<!-- {way} -->".encode()), named, way)
         self.assertIn("(images/tradeoffs_culling.svg)", self.section())
+
+
+class Passes(Page):
+    def setUp(self):
+        super().setUp()
+        self.file = next(self.folder.glob("gcn_passes_*.csv"))
+        self.device = self.folder / "gpu_test-9000.csv"
+
+    def section(self):
+        return tradeoffs.gpu_passes(tradeoffs.Data())
+
+    def change(self, pattern, new):
+        text, count = re.subn(pattern, new, self.file.read_text(), count=1, flags=re.M)
+        self.assertEqual(count, 1, "the test changes a text that is not there")
+        self.file.write_text(text)
+
+    def test_without_results_the_page_has_no_such_section(self):
+        self.file.unlink()
+        self.assertIsNone(self.run_tool())
+        self.assertNotIn("## Passes on the GPU", self.page.read_text())
+        self.assertIn("\n\n## Skies\n", self.page.read_text())
+
+    def test_a_pass_stands_with_all_of_one_family_and_the_registers_of_the_others(self):
+        self.change("^depth,bonaire,.*$", "depth,bonaire,101,102,103,104,5,6")
+        self.change("^depth,vega10,.*$", "depth,vega10,1,202,3,4,7,5")
+        self.change("^depth,gfx1100,.*$", "depth,gfx1100,1,302,3,4,8,5")
+        self.assertIn("| `depth` | 101 | 102 | 103 | 104 | 5 | 6 | 202 | 7 | 302 | 8 |\n",
+                      self.section())
+
+    def test_a_variant_stands_with_what_it_adds_to_the_plain_one(self):
+        self.change("^deferred:punctual,bonaire,.*$", "deferred:punctual,bonaire,1000,40,3,4,5,6")
+        self.change("^deferred:punctual.sun,bonaire,.*$",
+                    "deferred:punctual+sun,bonaire,990,48,3,4,5,6")
+        text = self.section()
+        self.assertIn("| `punctual+sun` | -10 | +8 | 990 | 48 |", text)
+        self.assertIn("| `punctual` |  |  | 1000 | 40 |", text)
+        self.assertRegex(text, r"\| `everything` \|  \|  \| ")
+
+    def test_every_pass_that_is_recorded_is_shown_once(self):
+        text = self.section()
+        names = {line.split(",")[0] for line in self.file.read_text().splitlines()
+                 if ",bonaire," in line}
+        self.assertGreater(len(names), 30)
+        for name in names:
+            self.assertEqual(text.count(f"| `{name.split(':')[-1]}` |"), 1, name)
+
+    def test_times_of_a_device_stand_over_numbers_of_lights(self):
+        self.assertNotIn("Milliseconds of the building", self.section())
+        self.device.write_text(DEVICE)
+        text = self.section()
+        self.assertIn("\nTest 9000, driver 7:\n\n| rows of pixels | way | 10 | 500 |\n", text)
+        self.assertIn("| 1080 | `clusters, no depth` | 0.0711 | 0.123 |\n", text)
+        self.assertIn("| 1080 | `tiles` | – | 0.25 |\n", text)
+
+    def test_a_page_that_is_stale_is_noticed(self):
+        self.device.write_text(DEVICE)
+        self.assertIsNone(self.run_tool())
+        self.assertEqual(self.page.read_text().count("\n## Passes on the GPU\n"), 1)
+        self.assertIsNone(self.run_tool("--check"))
+        self.device.write_text(DEVICE.replace("0.25", "0.26"))
+        self.assertIn("not what the measurements say", self.run_tool("--check"))
+        self.device.write_text(DEVICE)
+        self.change("^depth,gfx1100,.*$", "depth,gfx1100,1,2,3,4,5,6")
+        self.assertIn("not what the measurements say", self.run_tool("--check"))
+
+    def test_what_the_benchmark_does_not_write_is_refused(self):
+        for old, new, message in (("# device: ", "# ", "names the device"),
+                                  ("0.123456", "fast", "median_ms is no number but 'fast'"),
+                                  ("way,", "ways,", "the columns are not"),
+                                  ('"clusters, no depth"', "clusters, no depth", "the columns"),
+                                  (",0.24", "", "the columns are not")):
+            with self.subTest(new):
+                self.device.write_text(DEVICE.replace(old, new))
+                self.assertIn(message, self.run_tool())
+                self.assertIn(self.device.name, self.run_tool())
+
+    def test_columns_are_those_of_the_benchmark(self):
+        source = (trees.ROOT / "bench/bench_gpu.c").read_text()
+        self.assertIn("# device: %s\\n" + ",".join(tradeoffs.DEVICE_COLUMNS) + "\\n", source)
 
 
 if __name__ == "__main__":
