@@ -176,7 +176,8 @@ HDRP_API hdrp_result hdrp_gpu_vk_apply_blockers(hdrp_gpu_vk* gpu, VkCommandBuffe
     !defined(HDRP_GPU)
 #define HDRP_I_GPU_VK_CULL_IMPLEMENTED
 
-/* Its bodies too, where it was included before the macro was defined. */
+/* Their bodies too, where they were included before the macros were defined. */
+#include "hdrp_cull.h"
 #include "hdrp_gpu_vk_core.h"
 
 #ifdef __cplusplus

@@ -223,6 +223,7 @@ void rd_vk_close(rd_vk* vk)
 void rd_vk_count(const rd_vk* vk, rd_stats* stats)
 {
     rd_stats_limit(stats, "lights_without_shadow_maps", (double)vk->light.shadow.without);
+    rd_stats_limit(stats, "lights_without_lists", (double)vk->light.lists.left_out);
     rd_stats_limit(stats, "listed_lights_dropped", (double)vk->dropped);
 }
 

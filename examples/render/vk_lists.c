@@ -100,12 +100,18 @@ static bool make_grid(rd_vk_lists* l, rd_vk_device* d, const rd_renderer* r, int
 
 bool rd_vk_lists_make(rd_vk_lists* l, rd_vk_device* d, const rd_renderer* r, rd_vk_shadow* shadow)
 {
+    const uint32_t wanted = RD_FEATURE_LISTS | RD_FEATURE_LIGHTS;
+    uint32_t count;
     memset(l, 0, sizeof *l);
     if (!make_records(l, d, r, shadow)) {
         return false;
     }
-    l->ready = r->options->features & RD_FEATURE_LISTS &&
-               r->options->features & RD_FEATURE_LIGHTS && l->listed + l->directional > 0u;
+    count = l->listed + l->directional;
+    l->ready = (r->options->features & wanted) == wanted && count > 0u;
+    if (l->ready && count > HDRP_CULL_SHAPES_MAX) { /* as in lists.c: surfaces visit all of them */
+        l->left_out = count;
+        l->ready = false;
+    }
     return !l->ready || (make_grid(l, d, r, 0) && make_grid(l, d, r, 1));
 }
 

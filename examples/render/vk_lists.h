@@ -9,7 +9,8 @@
 typedef struct rd_vk_lists {
     hdrp_light* items; /* those of lists, then directional ones */
     uint32_t listed, directional;
-    bool ready; /* lists are built; else surfaces visit all lights */
+    bool ready;        /* lists are built; else surfaces visit all lights */
+    uint32_t left_out; /* all lights, where they are too many for lists */
     hdrp_gpu_vk_buffer records, shapes;
     hdrp_gpu_vk_lists grids[2]; /* tiles, for opaque surfaces; clusters, for layers */
     rd_vk_mapped dropped[2];

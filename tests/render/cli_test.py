@@ -151,22 +151,37 @@ def is_the_same_on_any_number_of_threads(exe):
     return render_test.in_folder(check)
 
 
-def draws_an_empty_scene_by_vulkan(exe):
+# Options, and what is wrong with the numbers that --stats writes.
+def by_vulkan(exe, options, fault):
     def check(folder):
         with open(os.path.join(folder, "empty.gltf"), "w") as f:
             json.dump({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{}]}, f)
-        code, _, errors = run_in(exe, folder, [
-            "empty.gltf", "--backend", "vulkan", "--size", "3x2", "--spp", "1", "--out", "a.exr",
-            "--stats", "a.json"])
+        code, _, errors = run_in(exe, folder, options + [
+            "--backend", "vulkan", "--size", "3x2", "--spp", "1", "--quality", "fast",
+            "--out", "a.exr", "--stats", "a.json"])
         if code != 0:
             missing = any("there is no" in line for line in errors)  # driver or device
             return None if missing else f"exit status {code}: {errors}"
         with open(os.path.join(folder, "a.json")) as f:
-            stats = json.load(f)
+            return fault(json.load(f))
+
+    return render_test.in_folder(check)
+
+
+def draws_an_empty_scene_by_vulkan(exe):
+    def fault(stats):
         total, passes = stats["total_ms"], sum(stats["passes_ms"].values())
         return None if passes <= total else f"passes take {passes} ms of {total}"
 
-    return render_test.in_folder(check)
+    return by_vulkan(exe, ["empty.gltf"], fault)
+
+
+def lights_by_vulkan_what_no_list_holds(exe):
+    def fault(stats):
+        left_out = stats["limits_hit"]["lights_without_lists"]
+        return None if left_out >= 65536 else f"{left_out} lights are without lists"
+
+    return by_vulkan(exe, ["--lights", "65536", "--features", "-shadows,-ao"], fault)
 
 
 def main():
@@ -178,7 +193,7 @@ def main():
     tally.check("--version", says_on_stdout(exe, "--version", "hdrp_render "))
     for check in (writes_what_it_promises, finds_no_difference_to_itself, numbers_its_frames,
                   keeps_an_old_picture_when_it_fails, is_the_same_on_any_number_of_threads,
-                  draws_an_empty_scene_by_vulkan):
+                  draws_an_empty_scene_by_vulkan, lights_by_vulkan_what_no_list_holds):
         tally.check(check.__name__, check(exe))
     tally.finish()
 
