@@ -322,7 +322,8 @@ static VkResult hdrp_i_gpu_vk_sampler(hdrp_gpu_vk* gpu)
     return gpu->vk.CreateSampler(gpu->desc.device, &info, gpu->desc.allocation, &gpu->linear);
 }
 
-/* Threads of a group: a subgroup, where all subgroups have one size, so that it runs in step. */
+/* Threads of a group: a subgroup, where all subgroups have one size, so that it runs in step. What
+ * Vulkan promises of full subgroups only with a feature, devices of one size do anyway. */
 static void hdrp_i_gpu_vk_choose_group(hdrp_gpu_vk* gpu)
 {
     VkPhysicalDeviceSubgroupSizeControlPropertiesEXT sizes;

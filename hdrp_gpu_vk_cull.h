@@ -157,10 +157,11 @@ typedef struct hdrp_gpu_vk_blockers {
  *  blockers  what is read and written; what hdrp_cull_blocker_begin checks is for the caller to
  *            keep true: the device cannot refuse an index that is too large
  *  returns   HDRP_OK, or an error, with nothing recorded; without lights nothing is recorded either
- *  errors    HDRP_ERROR_NULL_POINTER, HDRP_ERROR_BAD_ARGUMENT for more lights than shapes, arrays
- *            that do not hold them or offsets that are not aligned, HDRP_ERROR_UNSUPPORTED where
- *            the pass was not asked for, HDRP_ERROR_OUT_OF_DEVICE_MEMORY beyond desc.frame_passes,
- *            and those of the driver as for hdrp_gpu_vk_init
+ *  errors    HDRP_ERROR_NULL_POINTER, HDRP_ERROR_BAD_ARGUMENT for more lights than the lists have
+ *            room for, arrays that do not hold them or offsets that are not aligned,
+ *            HDRP_ERROR_UNSUPPORTED where the pass was not asked for,
+ *            HDRP_ERROR_OUT_OF_DEVICE_MEMORY beyond desc.frame_passes, and those of the driver as
+ *            for hdrp_gpu_vk_init
  *  note      equal to the bit where the device computes as IEEE 754 says */
 HDRP_API hdrp_result hdrp_gpu_vk_apply_blockers(hdrp_gpu_vk* gpu, VkCommandBuffer commands,
                                                 const hdrp_gpu_vk_lists* lists,

@@ -127,7 +127,7 @@ HDRP_API hdrp_result hdrp_gpu_vk_env_reduce(hdrp_gpu_vk* gpu, VkCommandBuffer co
  *  env         after hdrp_gpu_vk_env_reduce
  *  first_face  [0,78]  of the 6 * desc.specular_levels faces, those of level 0 first
  *  face_count  [0,78]  faces to write: those of level 1 cost most
- *  returns     HDRP_OK, or an error, with nothing recorded
+ *  returns     HDRP_OK, or an error, with nothing recorded, unless the driver fails in the middle
  *  errors      as hdrp_gpu_vk_env_resample
  *  note        the first face of a level takes all six in VK_IMAGE_LAYOUT_UNDEFINED, the last one
  *              leaves them in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL; where a range ends between,

@@ -726,7 +726,9 @@ HDRP_I_GPU_VK_FN hdrp_i_gpu_vk_list_bytes hdrp_i_gpu_vk_sizes_of(const hdrp_gpu_
                                                       : b.entries;
     b.largest = b.cells > b.masks ? b.cells : b.masks;
     b.largest = b.lights > b.largest ? b.lights : b.largest;
-    b.views = (VkDeviceSize)l->shadow_view_count * sizeof(hdrp_shadow_view);
+    b.views = l->shadow_views.buffer != VK_NULL_HANDLE
+                  ? (VkDeviceSize)l->shadow_view_count * sizeof(hdrp_shadow_view)
+                  : 0u;
     b.largest = b.views > b.largest ? b.views : b.largest;
     return b;
 }
