@@ -205,8 +205,9 @@ HDRP_FN hdrp_u32 hdrp_cull_slice(hdrp_cull_grid grid, float scale, float z_view)
  *  source   the inverse of hdrp_cull_log2 by Newton's method, with the slope of the logarithm */
 HDRP_FN float hdrp_cull_slice_begin(hdrp_cull_grid grid, float scale, hdrp_u32 slice)
 {
-    float wanted = grid.series.y + hdrp_f32_from_u32(slice) / hdrp_max(scale, 1e-3f);
-    float octave = hdrp_floor(hdrp_clamp(wanted, -126.0f, 126.0f));
+    float place = grid.series.y + hdrp_f32_from_u32(slice) / hdrp_max(scale, 1e-3f);
+    float wanted = hdrp_clamp(place, -126.0f, 126.0f);
+    float octave = hdrp_floor(wanted);
     hdrp_u32 exponent = hdrp_bits_from_f32(octave + 8388735.0f) & 0xffu; /* 2^23 + 127 */
     float z = hdrp_f32_from_bits(exponent << 23);
     z += z * (wanted - octave);
