@@ -98,6 +98,9 @@ class Job:
         return True
 
 
+PART = re.compile(r"hdrp_gpu_vk_\w+\.h$")
+
+
 class Matrix:
     def __init__(self, options):
         self.include = options.include.resolve()
@@ -161,10 +164,15 @@ class Matrix:
     def host(self, compiler, language):
         few, jobs = {}, []
         for header in self.headers:
+            # A part of a module is tried with the header that includes it, and once by itself.
+            is_part = PART.match(header.name) and not self.full
+            if is_part and self.brief:
+                continue
+            standards = [ONE_STANDARD[language]] if is_part else self.standards(language)
             for name, text in self.alone(header).items():
                 jobs += [self.host_job(compiler, language, standard, name, text)
-                         for standard in self.standards(language)]
-            if not self.brief:
+                         for standard in standards]
+            if not self.brief and not is_part:
                 few.update(self.contexts(header))
                 if compiler == "gcc":
                     jobs.append(self.host_job(
@@ -283,11 +291,17 @@ class Matrix:
                 commands.append(["glslangValidator", glsl])
         return Job(name, {source: text}, commands, forbidden="WARNING")
 
+    def for_shaders(self):
+        """Headers with formulas. The one-file versions of those of passes hold the formulas of all
+        others again, and take as long as these together."""
+        return [header for header in self.headers
+                if not (self.brief and header.name.startswith("hdrp_gpu_"))]
+
     def shaders(self, language, stages):
         jobs = []
         stages = stages[:1] if self.brief else stages
         define = "HDRP_HLSL" if language == "hlsl" else "GL_core_profile"
-        for header in self.headers:
+        for header in self.for_shaders():
             functions = self.shared_functions(header, define)
             body = calls.text(functions, self.headers)
             jobs += [self.shader_job(language, stage, header.stem, [header.name], body, True)
