@@ -258,6 +258,7 @@ static void what_is_missing_has_a_name(void** state)
     expect_missing(&desc, "maxPerStageDescriptorStorageBuffers");
     desc.passes = HDRP_GPU_VK_PASS_DEPTH;
     assert_null(hdrp_gpu_vk_missing(&desc, 0));
+    desc.passes = 0;
     driver.storage_buffers = 0;
     driver.threads = 128; /* as few as Vulkan allows: lighting needs more, the others do not */
     expect_missing(&desc, "maxComputeWorkGroupInvocations");
