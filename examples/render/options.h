@@ -11,6 +11,17 @@ typedef enum rd_quality { RD_QUALITY_FAST, RD_QUALITY_BALANCED, RD_QUALITY_REFER
 typedef enum rd_builtin { RD_BUILTIN_DISPLAY, RD_BUILTIN_LIGHTS } rd_builtin;
 typedef enum rd_backend { RD_BACKEND_CPU, RD_BACKEND_VULKAN } rd_backend;
 typedef enum rd_path { RD_PATH_DEFERRED, RD_PATH_FORWARD } rd_path;
+/* How blended surfaces are put together: sorted, or in a mode of hdrp_oit.h. */
+typedef enum rd_oit {
+    RD_OIT_SORTED,
+    RD_OIT_MCGUIRE,  /* weights of equation 7 */
+    RD_OIT_VOLITION, /* as the talk shows it */
+    RD_OIT_RECOMMENDED,
+    RD_OIT_FRONT,
+    RD_OIT_MOMENTS, /* six */
+    RD_OIT_WAVELET,
+    RD_OIT_COUNT
+} rd_oit;
 
 /* What --features turns on and off. */
 #define RD_FEATURE_CLEAR_COAT   (1u << 0)
@@ -52,6 +63,7 @@ typedef struct rd_options {
     rd_backend backend;
     rd_quality quality;
     rd_path path;
+    rd_oit oit;
     rd_view view;
     uint32_t features;
     bool has_exposure, has_eye, has_target, has_fov, has_camera, has_builtin;
@@ -65,5 +77,8 @@ typedef struct rd_options {
 
 bool rd_options_parse(rd_options* o, int argc, char** argv, rd_report* report);
 void rd_options_print_help(void);
+
+/* As the command line has it. */
+const char* rd_oit_name(rd_oit oit);
 
 #endif
