@@ -240,8 +240,7 @@ static bool begin_rendering(app* a)
         a->stats.device = a->vk ? rd_vk_device_name(a->vk) : NULL;
         return a->vk != NULL;
     }
-    return a->options.oit == RD_OIT_SORTED ||
-           rd_fail(&a->report, "--oit", "%s is not done yet", rd_oit_name(a->options.oit));
+    return true;
 }
 
 static bool render(app* a, const rd_camera* camera)

@@ -12,4 +12,29 @@ hdrp_oit_mode rd_oit_mode(rd_oit oit);
  * the exposure, so that nothing is rounded. */
 float rd_oit_unit(float exposure);
 
+/* Images of a picture, and of what is lit at half of its resolution. */
+typedef struct rd_oit_images {
+    bool present;
+    bool has_low;
+    float unit;
+    hdrp_oit_image full, low;
+    void* memory[2];
+    hdrp_v3* color;   /* behind the blended surfaces, and then with them, times unit */
+    float* uncovered; /* share of what is opaque that other transparent surfaces leave */
+} rd_oit_images;
+
+typedef struct rd_oit_desc {
+    rd_oit oit;
+    int width, height;
+    float exposure;
+    bool has_low;
+} rd_oit_desc;
+
+/* False: no memory. */
+bool rd_oit_begin(rd_oit_images* o, const rd_oit_desc* desc);
+void rd_oit_end(rd_oit_images* o);
+
+/* Share of what is behind that the blended surfaces of a pixel leave. */
+float rd_oit_revealage(const hdrp_oit_image* image, size_t px);
+
 #endif

@@ -62,6 +62,8 @@ typedef struct rd_material {
     rd_alpha_mode alpha_mode;
     float alpha, alpha_cutoff;
     bool double_sided, unlit;
+    bool additive;        /* adds what it emits, alpha of it, and hides nothing */
+    bool half_resolution; /* with --oit: soft enough to be lit at half of the resolution */
     bool is_lamp; /* what it emits is also a light of the scene: reflections show that instead */
     hdrp_v3 base_color;
     float metallic, perceptual_roughness;
@@ -174,6 +176,11 @@ rd_texture_slot rd_texture_slot_make(int texture);
 
 /* Is seen through: cannot enter a GBuffer, is composited in order of depth. */
 bool rd_material_is_layer(const rd_material* m);
+
+/* Covers some of what is behind it and changes none of the rest: what --oit is about. */
+bool rd_material_is_blended(const rd_material* m);
+/* Is any such surface marked so? */
+bool rd_scene_has_half_resolution(const rd_scene* scene);
 
 /* Transmits light through a sheet that is so rough that it scatters. */
 bool rd_material_scatters(const rd_material* m);
