@@ -28,6 +28,21 @@ float rd_oit_unit(float exposure)
     return ldexpf(1.0f, (int)floorf(log2f(exposure) + 0.5f));
 }
 
+bool rd_oit_is_low(const rd_options* o, const rd_material* m)
+{
+    return o->oit != RD_OIT_SORTED && (o->features & RD_FEATURE_HALF_RESOLUTION) != 0u &&
+           m->half_resolution && rd_material_is_blended(m);
+}
+
+bool rd_oit_has_low(const rd_options* o, const rd_scene* scene)
+{
+    bool any = false;
+    for (int i = 0; i < scene->material_count; ++i) {
+        any = any || rd_oit_is_low(o, &scene->materials[i]);
+    }
+    return any;
+}
+
 static bool make_image(hdrp_oit_image* image, void** memory, const hdrp_oit_desc* desc)
 {
     size_t bytes = hdrp_oit_memory_size(desc);

@@ -4,6 +4,7 @@
 
 #include "hdrp_oit.h"
 #include "options.h"
+#include "scene.h"
 
 /* Of anything but RD_OIT_SORTED. */
 hdrp_oit_mode rd_oit_mode(rd_oit oit);
@@ -11,6 +12,10 @@ hdrp_oit_mode rd_oit_mode(rd_oit oit);
 /* What light [nits] is multiplied by, so that colours are near 1: the power of 2 that is nearest to
  * the exposure, so that nothing is rounded. */
 float rd_oit_unit(float exposure);
+
+/* Is it lit at half of the resolution? And anything in the scene? */
+bool rd_oit_is_low(const rd_options* options, const rd_material* m);
+bool rd_oit_has_low(const rd_options* options, const rd_scene* scene);
 
 /* Images of a picture, and of what is lit at half of its resolution. */
 typedef struct rd_oit_images {

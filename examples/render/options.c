@@ -36,6 +36,7 @@ static const struct {
     {"specular_aa", RD_FEATURE_SPECULAR_AA},
     {"lists", RD_FEATURE_LISTS},
     {"blockers", RD_FEATURE_BLOCKERS},
+    {"half_resolution", RD_FEATURE_HALF_RESOLUTION},
     {"all", RD_FEATURE_ALL},
 };
 
@@ -199,7 +200,7 @@ static bool set_oit(const argument* a)
 static bool set_builtin(const argument* a)
 {
     int i;
-    bool ok = read_word(a, "display|lights", &i);
+    bool ok = read_word(a, "display|lights|transparency", &i);
     a->options->has_builtin = true;
     a->options->builtin = (rd_builtin)i;
     return ok;
@@ -308,7 +309,8 @@ static const struct {
     const char* value;
     const char* help;
 } table[] = {
-    {"--scene", set_builtin, "NAME", "without a file: display (default), or lights, a street"},
+    {"--scene", set_builtin, "NAME",
+     "without a file: display (default), lights (a street), transparency"},
     {"--env", set_env, "FILE", "sky: lat-long or cube, .exr or .hdr (default: a procedural sky)"},
     {"--env-lux", set_env_lux, "LUX", "scale the sky to this illuminance on level ground"},
     {"--out", set_out, "FILE", ".png (tone-mapped) or .exr (linear); default hdrp_render.png"},

@@ -14,9 +14,9 @@ static bool has_passes_of_absorption(const rd_sub_frame* s)
 
 static rd_layer_use light_blended(const rd_sub_frame* s, const rd_material* m, bool low)
 {
-    return m->half_resolution == low     ? RD_LAYER_LIT
-           : has_passes_of_absorption(s) ? RD_LAYER_UNLIT
-                                         : RD_LAYER_IGNORED;
+    return rd_oit_is_low(s->r->options, m) == low ? RD_LAYER_LIT
+           : has_passes_of_absorption(s)          ? RD_LAYER_UNLIT
+                                                  : RD_LAYER_IGNORED;
 }
 
 static rd_layer_use light_full(const rd_sub_frame* s, const rd_material* m)

@@ -33,8 +33,7 @@ static bool allocate_frame(rd_renderer* r, size_t pixels)
 static bool begin_oit(rd_renderer* r)
 {
     const rd_options* o = r->options;
-    const rd_oit_desc d = {o->oit, r->width, r->height, r->exposure,
-                           rd_scene_has_half_resolution(r->scene)};
+    const rd_oit_desc d = {o->oit, r->width, r->height, r->exposure, rd_oit_has_low(o, r->scene)};
     return o->oit == RD_OIT_SORTED || o->backend != RD_BACKEND_CPU || rd_oit_begin(&r->oit, &d);
 }
 

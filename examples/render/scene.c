@@ -61,16 +61,6 @@ bool rd_material_is_blended(const rd_material* m)
     return m->alpha_mode == RD_ALPHA_BLEND && !(m->transmission > 0.0f);
 }
 
-bool rd_scene_has_half_resolution(const rd_scene* scene)
-{
-    bool any = false;
-    for (int i = 0; i < scene->material_count; ++i) {
-        const rd_material* m = &scene->materials[i];
-        any = any || (m->half_resolution && rd_material_is_blended(m));
-    }
-    return any;
-}
-
 bool rd_material_scatters(const rd_material* m)
 {
     const float smooth = 0.1f;

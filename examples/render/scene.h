@@ -162,9 +162,15 @@ typedef struct rd_scene {
  * for rd_textures_prepare. *scene is to be freed in any case. */
 bool rd_scene_load_gltf(rd_scene* scene, const char* path, rd_report* report);
 
-/* The scene that is shown when no file is given, and a street of many lights. */
-bool rd_scene_build_builtin(rd_scene* scene, rd_report* report);
-bool rd_scene_build_lights(rd_scene* scene, rd_report* report);
+/* The scene that is shown when no file is given, a street of many lights, and transparent things
+ * before the former. */
+typedef enum rd_builtin {
+    RD_BUILTIN_DISPLAY,
+    RD_BUILTIN_LIGHTS,
+    RD_BUILTIN_TRANSPARENCY
+} rd_builtin;
+
+bool rd_scene_build(rd_scene* scene, rd_builtin which, rd_report* report);
 
 void rd_scene_free(rd_scene* scene);
 
@@ -179,8 +185,6 @@ bool rd_material_is_layer(const rd_material* m);
 
 /* Covers some of what is behind it and changes none of the rest: what --oit is about. */
 bool rd_material_is_blended(const rd_material* m);
-/* Is any such surface marked so? */
-bool rd_scene_has_half_resolution(const rd_scene* scene);
 
 /* Transmits light through a sheet that is so rough that it scatters. */
 bool rd_material_scatters(const rd_material* m);

@@ -269,7 +269,6 @@ static void extras_mark_what_is_additive_or_soft(void** state)
             s = load();
             assert_int_equal(s.materials[0].additive, i == 0 && k == 0);
             assert_int_equal(s.materials[0].half_resolution, i == 0);
-            assert_int_equal(rd_scene_has_half_resolution(&s), i == 0 && k == 0);
             rd_scene_free(&s);
         }
     }
