@@ -28,10 +28,16 @@ float rd_oit_unit(float exposure)
     return ldexpf(1.0f, (int)floorf(log2f(exposure) + 0.5f));
 }
 
+bool rd_oit_is_blended(const rd_options* o, const rd_material* m)
+{
+    bool transmits = m->transmission > 0.0f && (o->features & RD_FEATURE_REFRACTION) != 0u;
+    return m->alpha_mode == RD_ALPHA_BLEND && !transmits;
+}
+
 bool rd_oit_is_low(const rd_options* o, const rd_material* m)
 {
     return o->oit != RD_OIT_SORTED && (o->features & RD_FEATURE_HALF_RESOLUTION) != 0u &&
-           m->half_resolution && rd_material_is_blended(m);
+           m->half_resolution && rd_oit_is_blended(o, m);
 }
 
 bool rd_oit_has_low(const rd_options* o, const rd_scene* scene)

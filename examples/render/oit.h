@@ -13,6 +13,10 @@ hdrp_oit_mode rd_oit_mode(rd_oit oit);
  * the exposure, so that nothing is rounded. */
 float rd_oit_unit(float exposure);
 
+/* Covers some of what is behind it and changes none of the rest: what --oit is about. What transmits
+ * light keeps its order; with --features=-refraction nothing does. */
+bool rd_oit_is_blended(const rd_options* options, const rd_material* m);
+
 /* Is it lit at half of the resolution? And anything in the scene? */
 bool rd_oit_is_low(const rd_options* options, const rd_material* m);
 bool rd_oit_has_low(const rd_options* options, const rd_scene* scene);

@@ -106,7 +106,7 @@ rd_layers_seen rd_layers_over(const rd_sub_frame* s, const rd_layer* layers, uin
     rd_layers_seen seen = {{0.0f, 0.0f, 0.0f}, 1.0f};
     for (uint32_t i = 0; i < count && hdrp_v3_max_component(left) > NOTHING_LEFT; ++i) {
         const rd_layer* l = &layers[i];
-        if (choice == RD_LAYERS_WITHOUT_BLENDED && rd_material_is_blended(l->material)) {
+        if (choice == RD_LAYERS_WITHOUT_BLENDED && rd_oit_is_blended(s->r->options, l->material)) {
             continue;
         }
         seen.color = hdrp_v3_add(seen.color, hdrp_v3_mul(left, l->light));

@@ -21,12 +21,12 @@ static rd_layer_use light_blended(const rd_sub_frame* s, const rd_material* m, b
 
 static rd_layer_use light_full(const rd_sub_frame* s, const rd_material* m)
 {
-    return rd_material_is_blended(m) ? light_blended(s, m, false) : RD_LAYER_LIT;
+    return rd_oit_is_blended(s->r->options, m) ? light_blended(s, m, false) : RD_LAYER_LIT;
 }
 
 static rd_layer_use light_low(const rd_sub_frame* s, const rd_material* m)
 {
-    return rd_material_is_blended(m) ? light_blended(s, m, true) : RD_LAYER_IGNORED;
+    return rd_oit_is_blended(s->r->options, m) ? light_blended(s, m, true) : RD_LAYER_IGNORED;
 }
 
 /* >>blending */
@@ -49,7 +49,8 @@ static void blend_row(const rd_sub_frame* s, const rd_worker* w, hdrp_oit_image*
     for (uint32_t pass = 0; pass < passes; ++pass) {
         for (uint32_t i = 0; i < w->list->count; ++i) {
             const rd_layer* l = &w->list->items[i];
-            if (rd_material_is_blended(l->material) && (l->is_lit || pass + 1u < passes)) {
+            if (rd_oit_is_blended(s->r->options, l->material) &&
+                (l->is_lit || pass + 1u < passes)) {
                 blend_layer(s, image, pass, l, y);
             }
         }

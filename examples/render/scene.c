@@ -56,11 +56,6 @@ bool rd_material_is_layer(const rd_material* m)
     return m->alpha_mode == RD_ALPHA_BLEND || m->transmission > 0.0f;
 }
 
-bool rd_material_is_blended(const rd_material* m)
-{
-    return m->alpha_mode == RD_ALPHA_BLEND && !(m->transmission > 0.0f);
-}
-
 bool rd_material_scatters(const rd_material* m)
 {
     const float smooth = 0.1f;

@@ -183,9 +183,6 @@ rd_texture_slot rd_texture_slot_make(int texture);
 /* Is seen through: cannot enter a GBuffer, is composited in order of depth. */
 bool rd_material_is_layer(const rd_material* m);
 
-/* Covers some of what is behind it and changes none of the rest: what --oit is about. */
-bool rd_material_is_blended(const rd_material* m);
-
 /* Transmits light through a sheet that is so rough that it scatters. */
 bool rd_material_scatters(const rd_material* m);
 
