@@ -216,6 +216,7 @@ class Data:
         self.cull_file = first_result("cull_cpu_*.csv")
         self.cull = cull_rows(self.cull_file)
         self.oit = rows(ROOT / "tests/oit/recorded.csv")
+        self.oit_pictures = rows(ROOT / "tests/oit/pictures.csv")
         self.recorded_file = ROOT / "tests/accuracy/recorded.csv"
         self.recorded = {row["id"]: row for row in rows(self.recorded_file)}
         self.half = {row["id"]: row for row in rows(ROOT / "tests/accuracy/half.csv")}
@@ -508,7 +509,31 @@ def transparency(data):
     tables = {name: table(heads + titles, oit_lines(data, cases, precision),
                           "lrr" + "r" * len(cases))
               for name, (titles, cases, precision) in OIT_TABLES.items()}
-    return TRANSPARENCY.format(**tables)
+    return TRANSPARENCY.format(**tables, pictures=oit_pictures(data))
+
+
+def percent(text):
+    """A recorded share for people; less than a thousandth of a percent is rounding."""
+    share = 100.0 * float(text)
+    return f"{share:.2g}" if share >= 1e-3 else "0"
+
+
+def oit_pictures(data):
+    """The error of each mode of the renderer on whole scenes."""
+    found = {(row["mode"], row["scene"], row["resolution"]): row for row in data.oit_pictures}
+    lines = []
+    for mode in dict.fromkeys(row["mode"] for row in data.oit_pictures):
+        some = (found[mode, scene, resolution] for _, scene, resolution in OIT_SCENES)
+        lines.append([f"`--oit {mode}`", *(f"{percent(row['relative_rmse'])} / "
+                                           f"{percent(row['relative_worst'])}" for row in some)])
+    return table(["", *(title for title, _, _ in OIT_SCENES)], lines, "l" + "r" * len(OIT_SCENES))
+
+
+# Heads of columns, scene and resolution of what is soft.
+OIT_SCENES = [("transparency", "transparency", "full"),
+              ("the same, smoke at half resolution", "transparency", "half"),
+              ("AlphaBlendModeTest", "AlphaBlendModeTest", "full"),
+              ("glass-table", "glass-table", "full"), ("love, four times", "love", "full")]
 
 
 # Of each table: heads of columns, cases, and the precision of targets.
@@ -553,6 +578,21 @@ Light in R11G11B10F and coverage in R8 where the first table has RGBA16F for bot
 is then rounded at each layer:
 
 {compact}
+Whole pictures of [hdrp_render](../examples/render/README.md), 240 x 160, against `--oit sorted`, over
+the pixels that blended surfaces touch: relative RMSE of luminance and, behind the slash, the worst
+pixel, in percent. `transparency` is the built-in scene of smoke, panes, sparks and holograms; of the
+others nothing transmits (`--features=-refraction`), and love stands behind itself:
+
+{pictures}
+- `mcguire` is `eq7`, `volition` is `talk`. Glass that is black and of one opacity, as that of
+  glass-table, needs no order.
+- What covers keeps what it emits in its colour; only what hides nothing goes into the sums of
+  emission. On random layers of which half emit, that is half of the error of the other way.
+- Half the resolution costs about 1 % where sparks and edges are not hidden by smoke, in each mode
+  that is better than that.
+
+![Sorted, recommended, wavelet and volition, from left to right and down](images/oit.png)
+
 """
 
 
