@@ -217,6 +217,7 @@ class Data:
         self.cull_file = first_result("cull_cpu_*.csv")
         self.cull = cull_rows(self.cull_file)
         self.oit = rows(ROOT / "tests/oit/recorded.csv")
+        self.oit_steps = rows(ROOT / "tests/oit/steps.csv")
         self.recorded_file = ROOT / "tests/accuracy/recorded.csv"
         self.recorded = {row["id"]: row for row in rows(self.recorded_file)}
         self.half = {row["id"]: row for row in rows(ROOT / "tests/accuracy/half.csv")}
@@ -510,7 +511,20 @@ def transparency(data):
     tables = {name: table(heads + titles, oit_lines(data, cases, precision),
                           "lrr" + "r" * len(cases))
               for name, (titles, cases, precision) in OIT_TABLES.items()}
-    return TRANSPARENCY.format(**tables)
+    return TRANSPARENCY.format(steps=oit_steps_table(data), **tables)
+
+
+def oit_steps_table(data):
+    """The largest step between two frames, of all ways, for each sequence."""
+    found = {(row["way"], row["sequence"]): row for row in data.oit_steps}
+    sequences = list(dict.fromkeys(row["sequence"] for row in data.oit_steps))
+    lines = [[way.replace("_cards", " by card").replace("_pixels", " by pixel"),
+              *(shown(found[way, sequence][column]) for sequence in sequences
+                for column in ("picture_step", "pixel_step", "rms"))]
+             for way in dict.fromkeys(row["way"] for row in data.oit_steps)]
+    heads = [f"{sequence}: {column}" for sequence in sequences
+             for column in ("picture", "pixel", "RMSE")]
+    return table(["mode", *heads], lines, "l" + "r" * len(heads))
 
 
 # Of each table: heads of columns, cases, and the precision of targets.
@@ -555,6 +569,17 @@ Light in R11G11B10F and coverage in R8 where the first table has RGBA16F for bot
 is then rounded at each layer:
 
 {compact}
+In motion: the largest step between two frames that follow each other, root mean square over the
+picture and of any pixel, and the error over all frames, against sorting each pixel. Two panes go
+through each other (*crossing*), the camera goes half a radian around cards that cut each other
+(*orbit*) or through smoke (*dolly*), 240 frames each:
+
+{steps}
+What knows no order cannot jump where it changes: where layers change places, one pass is smoother
+than either way of sorting. `front` jumps where another layer becomes the nearest, `wavelet` and
+`moments` as little as sorting each pixel, which is what they come close to; sorting whole cards jumps
+over the whole picture. Where layers come near the camera and fade, weights that grow fast there
+(`eq7`, `eq8`, `eq10`) take the picture with them.
 """
 
 
