@@ -1048,16 +1048,17 @@ HDRP_API void hdrp_oit_blend_rows(hdrp_oit_image* image, uint32_t pass,
                                   const hdrp_oit_fragment* fragments, const uint32_t* pixels,
                                   size_t count, uint32_t row_begin, uint32_t row_end);
 
-/** Adds the sums of an image of lower resolution.
+/** Adds the sums of an image of lower resolution: all targets of the last pass.
  *  image      of the full resolution
  *  low        of the same mode; any size; sampled bilinearly, clamped at its edges
  *  row_begin  any  first row of image
  *  row_end    any  after the last row; limited to the height
  *  returns    HDRP_OK, or an error, with image untouched
- *  errors     HDRP_ERROR_NULL_POINTER, HDRP_ERROR_BAD_ARGUMENT for another mode or precision, and
- *             for a mode of several passes: what is nearest and what absorbs is known for one
- *             resolution only
+ *  errors     HDRP_ERROR_NULL_POINTER, HDRP_ERROR_BAD_ARGUMENT for another mode or precision
  *  range      rows: disjoint ranges may be added at the same time
+ *  note       in modes of several passes both images need all fragments in every pass but the last:
+ *             what is nearest and what absorbs hides those of the other resolution too. In the last
+ *             pass each gets its own
  *  note       targets are not rounded again: a composite shader adds in registers */
 HDRP_API hdrp_result hdrp_oit_merge_rows(hdrp_oit_image* image, const hdrp_oit_image* low,
                                          uint32_t row_begin, uint32_t row_end);
@@ -1474,61 +1475,108 @@ static hdrp_oit_targets hdrp_i_oit_sums(const hdrp_oit_image* image, size_t pixe
     return t;
 }
 
-static hdrp_v4 hdrp_i_oit_lerp4(hdrp_v4 a, hdrp_v4 b, float t)
-{
-    return hdrp_v4_make(hdrp_lerp(a.x, b.x, t), hdrp_lerp(a.y, b.y, t), hdrp_lerp(a.z, b.z, t),
-                        hdrp_lerp(a.w, b.w, t));
-}
+/* Four pixels and what lies between them. */
+typedef struct hdrp_i_oit_tap {
+    size_t pixel[4];
+    float x, y;
+} hdrp_i_oit_tap;
 
-/* The sums of an image between four pixels; x and y in pixels, 0.5 at the centre of the first. */
-static hdrp_oit_targets hdrp_i_oit_sampled(const hdrp_oit_image* image, float x, float y)
+/* x and y in pixels, 0.5 at the centre of the first. */
+static hdrp_i_oit_tap hdrp_i_oit_tap_at(const hdrp_oit_image* image, float x, float y)
 {
     float last_x = (float)(image->desc.width_px - 1u), last_y = (float)(image->desc.height_px - 1u);
     float px = hdrp_clamp(x - 0.5f, 0.0f, last_x), py = hdrp_clamp(y - 0.5f, 0.0f, last_y);
     float column = hdrp_floor(px), row = hdrp_floor(py);
     size_t width = image->desc.width_px;
     size_t step_x = column < last_x ? 1u : 0u, step_y = row < last_y ? width : 0u;
-    size_t at = (size_t)row * width + (size_t)column;
-    hdrp_oit_targets a = hdrp_i_oit_sums(image, at), b = hdrp_i_oit_sums(image, at + step_x);
-    hdrp_oit_targets c = hdrp_i_oit_sums(image, at + step_y);
-    hdrp_oit_targets d = hdrp_i_oit_sums(image, at + step_y + step_x);
-    a.accum = hdrp_i_oit_lerp4(hdrp_i_oit_lerp4(a.accum, b.accum, px - column),
-                               hdrp_i_oit_lerp4(c.accum, d.accum, px - column), py - row);
-    a.light = hdrp_i_oit_lerp4(hdrp_i_oit_lerp4(a.light, b.light, px - column),
-                               hdrp_i_oit_lerp4(c.light, d.light, px - column), py - row);
-    return a;
+    hdrp_i_oit_tap tap;
+    tap.pixel[0] = (size_t)row * width + (size_t)column;
+    tap.pixel[1] = tap.pixel[0] + step_x;
+    tap.pixel[2] = tap.pixel[0] + step_y;
+    tap.pixel[3] = tap.pixel[2] + step_x;
+    tap.x = px - column;
+    tap.y = py - row;
+    return tap;
+}
+
+static hdrp_v4 hdrp_i_oit_lerp4(hdrp_v4 a, hdrp_v4 b, float t)
+{
+    return hdrp_v4_make(hdrp_lerp(a.x, b.x, t), hdrp_lerp(a.y, b.y, t), hdrp_lerp(a.z, b.z, t),
+                        hdrp_lerp(a.w, b.w, t));
+}
+
+static hdrp_v4 hdrp_i_oit_mixed(const hdrp_v4* v, const hdrp_i_oit_tap* tap)
+{
+    return hdrp_i_oit_lerp4(hdrp_i_oit_lerp4(v[0], v[1], tap->x),
+                            hdrp_i_oit_lerp4(v[2], v[3], tap->x), tap->y);
+}
+
+/* The sums of an image between four pixels. */
+static hdrp_oit_targets hdrp_i_oit_sampled(const hdrp_oit_image* image, const hdrp_i_oit_tap* tap)
+{
+    hdrp_v4 accum[4], light[4];
+    hdrp_oit_targets t;
+    int i;
+    for (i = 0; i < 4; ++i) {
+        t = hdrp_i_oit_sums(image, tap->pixel[i]);
+        accum[i] = t.accum;
+        light[i] = t.light;
+    }
+    t.accum = hdrp_i_oit_mixed(accum, tap);
+    t.light = hdrp_i_oit_mixed(light, tap);
+    return t;
+}
+
+/* The nearest fragments of both: each image has those whose surface is its own. */
+static void hdrp_i_oit_merge_front(hdrp_oit_image* image, const hdrp_oit_image* low, size_t pixel,
+                                   const hdrp_i_oit_tap* tap)
+{
+    uint32_t plane = hdrp_i_oit_first_color(image) - 1u;
+    hdrp_v4* to = hdrp_i_oit_texel(image, plane, pixel);
+    hdrp_v4 v[4], added;
+    int i;
+    for (i = 0; i < 4; ++i) {
+        v[i] = *hdrp_i_oit_texel(low, plane, tap->pixel[i]);
+    }
+    added = hdrp_i_oit_mixed(v, tap);
+    *to = hdrp_v4_make(to->x + added.x, to->y + added.y, to->z + added.z, to->w + added.w);
+}
+
+static void hdrp_i_oit_merge_pixel(hdrp_oit_image* image, const hdrp_oit_image* low, size_t pixel,
+                                   const hdrp_i_oit_tap* tap)
+{
+    uint32_t first = hdrp_i_oit_first_color(image);
+    hdrp_oit_targets a = hdrp_i_oit_sums(image, pixel), b = hdrp_i_oit_sampled(low, tap);
+    a = image->desc.mode == HDRP_OIT_MODE_TALK ? hdrp_oit_talk_merge(a, b) : hdrp_oit_merge(a, b);
+    *hdrp_i_oit_texel(image, first, pixel) = a.accum;
+    *hdrp_i_oit_texel(image, first + 1u, pixel) = a.light;
+    if (first + 2u < image->target_count) {
+        *hdrp_i_oit_texel(image, first + 2u, pixel) = hdrp_v4_make(a.light.w, 0.0f, 0.0f, 0.0f);
+    }
+    if (image->desc.mode == HDRP_OIT_MODE_FRONT) {
+        hdrp_i_oit_merge_front(image, low, pixel, tap);
+    }
 }
 
 HDRP_API hdrp_result hdrp_oit_merge_rows(hdrp_oit_image* image, const hdrp_oit_image* low,
                                          uint32_t row_begin, uint32_t row_end)
 {
-    uint32_t x, y, end, first;
+    uint32_t x, y, end;
     float scale_x, scale_y;
     if (!image || !low) {
         return HDRP_ERROR_NULL_POINTER;
     }
-    if (image->desc.mode != low->desc.mode || image->desc.precision != low->desc.precision ||
-        hdrp_oit_pass_count(image->desc.mode) > 1u) {
+    if (image->desc.mode != low->desc.mode || image->desc.precision != low->desc.precision) {
         return HDRP_ERROR_BAD_ARGUMENT;
     }
-    first = hdrp_i_oit_first_color(image);
     end = row_end < image->desc.height_px ? row_end : image->desc.height_px;
     scale_x = (float)low->desc.width_px / (float)image->desc.width_px;
     scale_y = (float)low->desc.height_px / (float)image->desc.height_px;
     for (y = row_begin; y < end; ++y) {
         for (x = 0u; x < image->desc.width_px; ++x) {
-            size_t pixel = (size_t)y * image->desc.width_px + x;
-            hdrp_oit_targets a = hdrp_i_oit_sums(image, pixel);
-            hdrp_oit_targets b =
-                hdrp_i_oit_sampled(low, ((float)x + 0.5f) * scale_x, ((float)y + 0.5f) * scale_y);
-            a = image->desc.mode == HDRP_OIT_MODE_TALK ? hdrp_oit_talk_merge(a, b)
-                                                       : hdrp_oit_merge(a, b);
-            *hdrp_i_oit_texel(image, first, pixel) = a.accum;
-            *hdrp_i_oit_texel(image, first + 1u, pixel) = a.light;
-            if (first + 2u < image->target_count) {
-                *hdrp_i_oit_texel(image, first + 2u, pixel) =
-                    hdrp_v4_make(a.light.w, 0.0f, 0.0f, 0.0f);
-            }
+            hdrp_i_oit_tap tap =
+                hdrp_i_oit_tap_at(low, ((float)x + 0.5f) * scale_x, ((float)y + 0.5f) * scale_y);
+            hdrp_i_oit_merge_pixel(image, low, (size_t)y * image->desc.width_px + x, &tap);
         }
     }
     return HDRP_OK;

@@ -145,6 +145,9 @@ static bool can_show(const rd_renderer* r, rd_report* report)
     if (r->options->quality == RD_QUALITY_REFERENCE && stage == RD_STAGE_LIGHTING) {
         return rd_fail(report, "--quality reference", "needs --backend cpu");
     }
+    if (r->options->oit != RD_OIT_SORTED && stage == RD_STAGE_LIGHTING) {
+        return rd_fail(report, "--oit", "%s needs --backend cpu", rd_oit_name(r->options->oit));
+    }
     if (stage == RD_STAGE_LISTS || view == RD_VIEW_DIFFUSE || view == RD_VIEW_SPECULAR ||
         view == RD_VIEW_LAYERS || view == RD_VIEW_AO) {
         return rd_fail(report, "--view", "%s needs --backend cpu", rd_view_name(view));

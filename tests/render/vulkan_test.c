@@ -40,9 +40,8 @@ typedef struct studio {
 static bool load(studio* s)
 {
     rd_options* o = &s->options;
-    return (o->scene                          ? rd_scene_load_gltf(&s->scene, o->scene, &s->report)
-            : o->builtin == RD_BUILTIN_LIGHTS ? rd_scene_build_lights(&s->scene, &s->report)
-                                              : rd_scene_build_builtin(&s->scene, &s->report)) &&
+    return (o->scene ? rd_scene_load_gltf(&s->scene, o->scene, &s->report)
+                     : rd_scene_build(&s->scene, o->builtin, &s->report)) &&
            rd_textures_prepare(&s->scene.textures, &s->report) &&
            (s->trace = rd_trace_build(&s->scene, &s->report)) != NULL;
 }
