@@ -126,7 +126,7 @@ deferred: one module; punctual is the Standard material with points and spots, a
 CHECKED = "bonaire"  # the family for which --check has time
 # Vector registers on it, at most. The aim for lists is 48 throughout.
 LIMITS = {"classify": 48, "dispatch": 48, "cull_project": 84, "cull_coarse": 48, "cull_tiles": 48,
-          "cull_pixels": 48, "cull_clusters": 52, "depth": 48, "deferred:punctual": 48,
+          "cull_pixels": 48, "cull_clusters": 52, "depth": 48, "oit_composite": 48, "deferred:punctual": 48,
           "deferred:punctual+sun+mask+sky": 64}
 
 
