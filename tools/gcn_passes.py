@@ -30,7 +30,7 @@ OP_TYPE_IMAGE, OP_TYPE_SAMPLED_IMAGE, OP_TYPE_POINTER, OP_VARIABLE, OP_DECORATE 
 BINDING, STORAGE_BUFFER, UNIFORM_CONSTANT, STORAGE_IMAGE = 33, 12, 0, 2
 
 # Words of features, HDRP_GPU_VK_WORD_... of hdrp_gpu_vk_light.h.
-LIT, POINT, SPOT, PYRAMID, BOX = 1 << 25, 1 << 2, 1 << 3, 1 << 4, 1 << 5
+BLOCKERS, LIT, POINT, SPOT, PYRAMID, BOX = 1, 1 << 25, 1 << 2, 1 << 3, 1 << 4, 1 << 5
 PUNCTUAL, ATLAS, NEGATIVE = POINT | SPOT, 1 << 16, 1 << 18
 SLICES, SUN, MASK, SKY, SPLIT = 1 << 26, 1 << 27, 1 << 28, 1 << 29, 1 << 30
 SUBSURFACE, TRANSMISSION, STRETCH, FILM, COAT = (1 << (20 + bit) for bit in range(5))
@@ -54,7 +54,8 @@ VARIANTS = {
     "punctual+anisotropy": SIMPLE | STRETCH,
     "punctual+iridescence": SIMPLE | FILM,
     "punctual+coat": SIMPLE | COAT,
-    "everything": 0xfff5003e,
+    "punctual+blockers": SIMPLE | BLOCKERS,
+    "everything": 0xfff5003f,
 }
 
 
