@@ -642,8 +642,8 @@ when a number of bonaire moves, and when a pass takes more registers than it was
 {passes}
 There is no second set of shaders with 16-bit arithmetic. `tools/gcn_passes.py --half` makes one of
 the same words and compiles it: on vega10 and gfx1100, which have such instructions, every pass then
-takes more of them (tone mapping a fifth, harmonics half as much again), for the conversions, and but
-for the composite of transparency, which waits for memory, none fits the GPU more often.
+takes more of them (tone mapping a fifth, harmonics half as much again), for the conversions. Only
+the composite of transparency and the copy of a cube fit the GPU more often, and both wait for memory.
 
 Deferred lighting is one module and these are its variants, by specialisation. *punctual* is the
 Standard material with points and spots, what follows a + is a feature more, and *adds* is what it
