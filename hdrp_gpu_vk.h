@@ -56,7 +56,7 @@
  * What passes need beside Vulkan 1.1 and a queue that computes; hdrp_gpu_vk_missing checks it:
  *
  *     lists, blockers   10 storage buffers of a shader
- *     lighting          8 of them, 13 sampled images, 2 storage images
+ *     lighting          12 of them, 13 sampled images, 2 storage images
  *     environments      18432 bytes of memory that a group shares
  *     all but lists, blockers and depth: the feature shaderStorageImageWriteWithoutFormat
  *

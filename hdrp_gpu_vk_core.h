@@ -275,7 +275,7 @@ extern "C" {
 
 /* ---- what a pass is made of ------------------------------------------------------------------ */
 
-#define HDRP_I_GPU_VK_BINDINGS_MAX 24u
+#define HDRP_I_GPU_VK_BINDINGS_MAX 28u
 #define HDRP_I_GPU_VK_GROUP_MAX    64u /* threads, of shaders/group.glsl */
 
 /* Places in hdrp_gpu_vk.pipelines. */

@@ -12,7 +12,9 @@ layout(constant_id = 0) const uint FEATURES = HDRP_BRDF_FEATURE_ALL;
 #define HDRP_WORD          HDRP_GPU_VK_WORD_ALL
 #define HDRP_LIGHTING_SET  1
 #define HDRP_SHADOW_ATLAS
+#define HDRP_LIGHT_BLOCKERS
 #include "shadow_map.glsl"
+#include "light_blockers.glsl"
 #include "light_loop.glsl"
 
 #ifdef GBUFFER

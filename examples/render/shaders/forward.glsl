@@ -31,6 +31,9 @@ float light_shadow(uint shadow_index, vec3 position, vec3 normal, vec3 l, float 
 }
 
 #define HDRP_SHADOW_ATLAS
+#define HDRP_LIGHT_BLOCKERS
+#define HDRP_BLOCKER_BINDING 22
+#include "shaders/light_blockers.glsl"
 #include "shaders/light_loop.glsl"
 
 layout(location = 0) flat in uint triangle;
