@@ -20,9 +20,9 @@
  *     t = hdrp_oit_layer_export(f, through, scale);                      pass 2
  *     color = hdrp_oit_layer_composite(t_of_the_pixel, opaque_color, scale);
  *
- * Emission is what a surface adds whatever its alpha: fire, sparks, holograms, glow. It goes into
- * sums of its own, so that pixels where nothing covers anything are exact in every mode but that of
- * the talk. Colours are as they will be shown, exposed; scale is a power of 2 that brings them near
+ * Emission is what a surface adds whatever its alpha: fire, sparks, glow. It goes into sums of its
+ * own, so that pixels where nothing covers anything are exact in every mode but that of the talk.
+ * What shines in proportion to its alpha is better off as a part of its colour. Colours are as they will be shown, exposed; scale is a power of 2 that brings them near
  * 1 where they are not, and products with weights stay below 65504 / 32 whatever they are: 32
  * fragments never overflow a half float.
  *

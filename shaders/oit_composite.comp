@@ -110,6 +110,13 @@ vec3 color_of(hdrp_oit_front_targets t, vec3 behind)
     return hdrp_oit_composite(sums_of(t), behind, scale.x);
 }
 
+// Share of what is behind that is seen.
+float revealage_of(hdrp_oit_front_targets t)
+{
+    float through = hdrp_saturate(KIND == TALK ? t.light.x : t.light.w);
+    return KIND == FRONT ? through * (1.0 - hdrp_saturate(t.front.w)) : through;
+}
+
 void main()
 {
     uvec2 pixel = gl_GlobalInvocationID.xy;
@@ -122,5 +129,6 @@ void main()
         t = merged(t, sample_low(pixel));
     }
     vec3 color = min(color_of(t, behind.xyz), vec3(scale.w));
-    imageStore(composed, ivec2(pixel), vec4(color, behind.w));
+    float alpha = behind.w + (1.0 - behind.w) * (1.0 - revealage_of(t));
+    imageStore(composed, ivec2(pixel), vec4(color, alpha));
 }

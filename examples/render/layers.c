@@ -101,17 +101,11 @@ static void finish(const rd_sub_frame* s, rd_layer* l, const rd_shade_point* p,
 
 static void shade_batch(const rd_sub_frame* s, rd_worker* w, batch* b)
 {
-    const hdrp_v3 dark = hdrp_v3_splat(0.0f);
     rd_shade(s->r->lighting, rd_layer_lists(s), w->points, b->count, s->index, w->shaded,
              &w->shade);
     for (uint32_t i = 0; i < b->count; ++i) {
         rd_layer* l = &w->list->items[b->item[i]];
-        hdrp_v3 light = rd_lit_part(s, &w->shaded[i], b->emission[i]);
-        hdrp_v3 reflected = rd_lit_part(s, &w->shaded[i], dark);
-        l->light = hdrp_v3_scale(light, b->alpha[i]);
-        l->reflected = hdrp_v3_scale(reflected, l->coverage);
-        l->emitted =
-            s->r->options->view == RD_VIEW_LIT ? hdrp_v3_scale(b->emission[i], b->alpha[i]) : dark;
+        l->light = hdrp_v3_scale(rd_lit_part(s, &w->shaded[i], b->emission[i]), b->alpha[i]);
         finish(s, l, &w->points[i], &w->shaded[i]);
     }
     b->count = 0;

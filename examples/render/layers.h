@@ -7,11 +7,9 @@
 typedef struct rd_layer {
     int x; /* in its row */
     const rd_material* material;
-    hdrp_v3 light;     /* what it sends towards the viewer [nits] */
-    hdrp_v3 emitted;   /* the part of it that it emits */
-    hdrp_v3 reflected; /* and the rest; both 0 where it was not lit */
-    hdrp_v3 through;   /* share of the light behind that it lets through */
-    float coverage;
+    hdrp_v3 light;   /* what it sends towards the viewer [nits]; 0 where it was not lit */
+    hdrp_v3 through; /* share of the light behind that it lets through */
+    float coverage;  /* 0: only adds light */
     float distance_m, z_view;
     float transmitted_perceptual_roughness;
     bool is_lit;

@@ -31,12 +31,14 @@ static rd_layer_use light_low(const rd_sub_frame* s, const rd_material* m)
 
 /* >>blending */
 
+/* What a surface emits in proportion to its alpha is hidden like the rest of its colour, and a part
+ * of that. A colour without alpha is emission: that of what only adds light. */
 static void blend_layer(const rd_sub_frame* s, hdrp_oit_image* image, uint32_t pass,
                         const rd_layer* l, int y)
 {
-    float unit = s->r->oit.unit;
-    hdrp_oit_fragment f = hdrp_oit_fragment_make(
-        hdrp_v3_scale(l->reflected, unit), hdrp_v3_scale(l->emitted, unit), l->coverage, l->z_view);
+    hdrp_v3 light = hdrp_v3_scale(l->light, s->r->oit.unit);
+    hdrp_oit_fragment f =
+        hdrp_oit_fragment_make(light, hdrp_v3_splat(0.0f), l->coverage, l->z_view);
     uint32_t row = (uint32_t)y;
     uint32_t pixel = row * image->desc.width_px + (uint32_t)l->x;
     hdrp_oit_blend_rows(image, pass, &f, &pixel, 1, row, row + 1u);
