@@ -588,25 +588,38 @@ HDRP_I_GPU_VK_FN int hdrp_i_gpu_vk_bad_array(const hdrp_gpu_vk* gpu, const hdrp_
            range->bytes < (count > 0u ? count : 1u) * element_bytes;
 }
 
-HDRP_I_GPU_VK_FN hdrp_result hdrp_i_gpu_vk_check_blockers(const hdrp_gpu_vk* gpu,
-                                                          const hdrp_gpu_vk_lists* l,
+/* What the light loop reads of them, for lists of so many entries. */
+HDRP_I_GPU_VK_FN hdrp_result hdrp_i_gpu_vk_check_blockers(const hdrp_gpu_vk* gpu, uint64_t entries,
                                                           const hdrp_gpu_vk_blockers* b)
 {
-    uint64_t entries = (uint64_t)l->grid.tiles.z * l->grid.tiles.w * l->desc.entry_capacity;
-    if (l->frame.buffer == VK_NULL_HANDLE || b->places.buffer == VK_NULL_HANDLE ||
-        b->lights.buffer == VK_NULL_HANDLE || b->links.buffer == VK_NULL_HANDLE ||
+    if (b->lights.buffer == VK_NULL_HANDLE || b->links.buffer == VK_NULL_HANDLE ||
         b->blockers.buffer == VK_NULL_HANDLE || b->masks.buffer == VK_NULL_HANDLE) {
         return HDRP_ERROR_NULL_POINTER;
     }
-    if (b->light_count > l->desc.shape_capacity ||
-        hdrp_i_gpu_vk_bad_array(gpu, &b->places, b->light_count, sizeof(hdrp_v4)) ||
-        hdrp_i_gpu_vk_bad_array(gpu, &b->lights, b->light_count, sizeof(hdrp_cull_blocker_links)) ||
+    if (hdrp_i_gpu_vk_bad_array(gpu, &b->lights, b->light_count, sizeof(hdrp_cull_blocker_links)) ||
         hdrp_i_gpu_vk_bad_array(gpu, &b->links, 1u, sizeof(uint32_t)) ||
         hdrp_i_gpu_vk_bad_array(gpu, &b->blockers, 1u, sizeof(hdrp_cull_blocker)) ||
         hdrp_i_gpu_vk_bad_array(gpu, &b->masks, entries, sizeof(uint32_t))) {
         return HDRP_ERROR_BAD_ARGUMENT;
     }
     return HDRP_OK;
+}
+
+/* Those that lists lose lights to. */
+HDRP_I_GPU_VK_FN hdrp_result hdrp_i_gpu_vk_check_lists_of(const hdrp_gpu_vk* gpu,
+                                                          const hdrp_gpu_vk_lists* l,
+                                                          const hdrp_gpu_vk_blockers* b)
+{
+    uint64_t entries = (uint64_t)l->grid.tiles.z * l->grid.tiles.w * l->desc.entry_capacity;
+    hdrp_result r = hdrp_i_gpu_vk_check_blockers(gpu, entries, b);
+    if (l->frame.buffer == VK_NULL_HANDLE || b->places.buffer == VK_NULL_HANDLE) {
+        return HDRP_ERROR_NULL_POINTER;
+    }
+    if (b->light_count > l->desc.shape_capacity ||
+        hdrp_i_gpu_vk_bad_array(gpu, &b->places, b->light_count, sizeof(hdrp_v4))) {
+        return r == HDRP_ERROR_NULL_POINTER ? r : HDRP_ERROR_BAD_ARGUMENT;
+    }
+    return r;
 }
 
 HDRP_I_GPU_VK_FN void hdrp_i_gpu_vk_bound_array(hdrp_i_gpu_vk_bound* bound,
@@ -630,7 +643,7 @@ HDRP_API hdrp_result hdrp_gpu_vk_apply_blockers(hdrp_gpu_vk* gpu, VkCommandBuffe
     if (!gpu || !commands || !lists || !blockers) {
         return HDRP_ERROR_NULL_POINTER;
     }
-    r = hdrp_i_gpu_vk_check_blockers(gpu, lists, blockers);
+    r = hdrp_i_gpu_vk_check_lists_of(gpu, lists, blockers);
     if (r != HDRP_OK || blockers->light_count == 0u) {
         return r;
     }

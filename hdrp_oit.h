@@ -41,6 +41,7 @@
  *   published weights: weight_eq7 weight_eq8 weight_eq9 weight_eq10 weight_2015
  *   recommended: weight weighted_export export composite merge
  *   talk: talk_settings_make talk_weight talk_export talk_composite talk_merge
+ *   modes: mode_weight
  *   places: range_export place_of layer_export layer_composite
  *   front: front_export front_composite
  *   wavelet: wavelet_insert wavelet_transmittance
@@ -448,6 +449,53 @@ HDRP_FN hdrp_oit_targets hdrp_oit_talk_merge(hdrp_oit_targets a, hdrp_oit_target
     hdrp_oit_targets t = hdrp_oit_merge(a, b);
     t.light = hdrp_v4_make(a.light.x * b.light.x, 0.0f, 0.0f, a.light.w + b.light.w);
     return t;
+}
+
+/* >>modes */
+
+#define HDRP_OIT_MODE_RECOMMENDED 0 /* one pass: hdrp_oit_export */
+#define HDRP_OIT_MODE_FRONT       1 /* two passes, the first writes depth: hdrp_oit_front_export */
+#define HDRP_OIT_MODE_WAVELET     2 /* three passes: the best */
+#define HDRP_OIT_MODE_MOMENTS_6   3 /* three passes */
+#define HDRP_OIT_MODE_MOMENTS_4   4 /* three passes */
+#define HDRP_OIT_MODE_EQ7         5 /* one pass with published weights, emission apart */
+#define HDRP_OIT_MODE_EQ8         6
+#define HDRP_OIT_MODE_EQ9         7
+#define HDRP_OIT_MODE_EQ10        8
+#define HDRP_OIT_MODE_2015        9
+#define HDRP_OIT_MODE_TALK_WEIGHT 10 /* that of the talk, divided as in eq. 6, emission apart */
+#define HDRP_OIT_MODE_TALK        11 /* as shown */
+#define HDRP_OIT_MODE_COUNT       12
+
+/** The weight of a mode, for hdrp_oit_weighted_export.
+ *  mode          any    HDRP_OIT_MODE_...
+ *  f             valid
+ *  device_depth  any    0 at the near plane, 1 at the far one: read by eq. 10 and 2015 alone
+ *  s             valid  read by HDRP_OIT_MODE_TALK_WEIGHT alone
+ *  returns       [0,3000]
+ *  edges         a mode that has no weight of its own, or does not exist, takes the recommended one
+ *  error         none: a selection
+ *  source        a definition */
+HDRP_FN float hdrp_oit_mode_weight(hdrp_u32 mode, hdrp_oit_fragment f, float device_depth,
+                                   hdrp_oit_talk_settings s)
+{
+    float w;
+    if (mode == HDRP_OIT_MODE_EQ7) {
+        w = hdrp_oit_weight_eq7(f.z_view, f.alpha);
+    } else if (mode == HDRP_OIT_MODE_EQ8) {
+        w = hdrp_oit_weight_eq8(f.z_view, f.alpha);
+    } else if (mode == HDRP_OIT_MODE_EQ9) {
+        w = hdrp_oit_weight_eq9(f.z_view, f.alpha);
+    } else if (mode == HDRP_OIT_MODE_EQ10) {
+        w = hdrp_oit_weight_eq10(device_depth, f.alpha);
+    } else if (mode == HDRP_OIT_MODE_2015) {
+        w = hdrp_oit_weight_2015(device_depth, f.alpha);
+    } else if (mode == HDRP_OIT_MODE_TALK_WEIGHT) {
+        w = hdrp_oit_talk_weight(f, s);
+    } else {
+        w = hdrp_oit_weight(f.z_view, f.alpha);
+    }
+    return w;
 }
 
 /* >>places
@@ -879,21 +927,7 @@ HDRP_FN float hdrp_oit_moments_transmittance(hdrp_oit_moments m, hdrp_oit_fragme
 extern "C" {
 #endif
 
-typedef enum hdrp_oit_mode {
-    HDRP_OIT_MODE_RECOMMENDED = 0, /* one pass: hdrp_oit_export */
-    HDRP_OIT_MODE_FRONT,           /* two passes, the first writes depth: hdrp_oit_front_export */
-    HDRP_OIT_MODE_WAVELET,         /* three passes: the best */
-    HDRP_OIT_MODE_MOMENTS_6,       /* three passes */
-    HDRP_OIT_MODE_MOMENTS_4,       /* three passes */
-    HDRP_OIT_MODE_EQ7,             /* one pass with published weights, emission apart */
-    HDRP_OIT_MODE_EQ8,
-    HDRP_OIT_MODE_EQ9,
-    HDRP_OIT_MODE_EQ10,
-    HDRP_OIT_MODE_2015,
-    HDRP_OIT_MODE_TALK_WEIGHT, /* that of the talk, divided as in eq. 6, emission apart */
-    HDRP_OIT_MODE_TALK,        /* as shown */
-    HDRP_OIT_MODE_COUNT
-} hdrp_oit_mode;
+typedef uint32_t hdrp_oit_mode; /* HDRP_OIT_MODE_... */
 
 typedef enum hdrp_oit_format {
     HDRP_OIT_FORMAT_RGBA32F = 0,
@@ -1065,8 +1099,7 @@ static int hdrp_i_oit_is_layered(hdrp_oit_mode mode)
 
 static int hdrp_i_oit_exists(hdrp_oit_mode mode, hdrp_oit_precision precision)
 {
-    return (uint32_t)mode < (uint32_t)HDRP_OIT_MODE_COUNT &&
-           (uint32_t)precision <= (uint32_t)HDRP_OIT_PRECISION_FLOAT;
+    return mode < HDRP_OIT_MODE_COUNT && (uint32_t)precision <= (uint32_t)HDRP_OIT_PRECISION_FLOAT;
 }
 
 static hdrp_oit_target hdrp_i_oit_target(hdrp_oit_format format, hdrp_oit_blend color,
@@ -1308,22 +1341,8 @@ static uint32_t hdrp_i_oit_first_color(const hdrp_oit_image* image)
 static float hdrp_i_oit_mode_weight(const hdrp_oit_desc* d, hdrp_oit_fragment f)
 {
     float depth = d->far_m / (d->far_m - d->near_m) * (1.0f - d->near_m / f.z_view);
-    switch (d->mode) {
-    case HDRP_OIT_MODE_EQ7:
-        return hdrp_oit_weight_eq7(f.z_view, f.alpha);
-    case HDRP_OIT_MODE_EQ8:
-        return hdrp_oit_weight_eq8(f.z_view, f.alpha);
-    case HDRP_OIT_MODE_EQ9:
-        return hdrp_oit_weight_eq9(f.z_view, f.alpha);
-    case HDRP_OIT_MODE_EQ10:
-        return hdrp_oit_weight_eq10(depth, f.alpha);
-    case HDRP_OIT_MODE_2015:
-        return hdrp_oit_weight_2015(depth, f.alpha);
-    case HDRP_OIT_MODE_TALK_WEIGHT:
-        return hdrp_oit_talk_weight(f, hdrp_oit_talk_settings_make(d->feather, d->exposure));
-    default:
-        return hdrp_oit_weight(f.z_view, f.alpha);
-    }
+    return hdrp_oit_mode_weight(d->mode, f, depth,
+                                hdrp_oit_talk_settings_make(d->feather, d->exposure));
 }
 
 static hdrp_oit_place hdrp_i_oit_image_place(const hdrp_oit_image* image, hdrp_oit_fragment f,

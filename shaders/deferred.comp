@@ -12,8 +12,11 @@ layout(constant_id = 0) const uint WORD = HDRP_GPU_VK_WORD_ALL;
 #define HDRP_WORD     WORD
 #define HDRP_FEATURES ((WORD >> HDRP_GPU_VK_WORD_MATERIAL_SHIFT) & 31u)
 #define HDRP_SHADOW_ATLAS
+#define HDRP_LIGHT_BLOCKERS
+#define HDRP_BLOCKER_BINDING 24
 #include "hdrp_shadow.h"
 #include "shadow_map.glsl"
+#include "light_blockers.glsl"
 #include "light_loop.glsl"
 
 layout(local_size_x = 256) in;

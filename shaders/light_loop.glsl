@@ -9,14 +9,16 @@
 //     #define HDRP_WORD     HDRP_GPU_VK_WORD_ALL          what else there may be: see below
 //
 // Both are constants, or specialization constants: what is not in them costs nothing. Of HDRP_WORD
-// these count: types of lights in lists, _SHADOW, _NEGATIVE, _SLICES, _MASKS, _DIRECTIONAL,
-// _SHADOW_MASK, _ENVIRONMENT. A shader may define, besides:
+// these count: types of lights in lists, _SHADOW, _NEGATIVE, _SLICES, _MASKS, _BLOCKERS,
+// _DIRECTIONAL, _SHADOW_MASK, _ENVIRONMENT. A shader may define, besides:
 //
 //     HDRP_LIGHTING_SET      descriptor set of what is declared below; 0
-//     HDRP_LIGHTING_BINDING  its first binding; 0. It takes those up to + 11
+//     HDRP_LIGHTING_BINDING  its first binding; 0. It takes those up to + 15
 //     HDRP_SHADOW_ATLAS      it has declared float light_shadow(uint shadow_index, vec3 position,
 //                            vec3 normal, vec3 l, float distance_m): what lights see, in [0,1];
 //                            shaders/shadow_map.glsl, included before, does
+//     HDRP_LIGHT_BLOCKERS    it has included shaders/light_blockers.glsl before: what keeps lights
+//                            from parts of a cell
 //
 // Bindings, counted from HDRP_LIGHTING_BINDING; all must be valid, and a stand-in of the same kind
 // serves for what HDRP_WORD or the parameters leave out:
@@ -26,7 +28,8 @@
 //     2  storage buffer  tiles             7  samplerCube  specular, linear between levels too
 //     3  storage buffer  cells             8  samplerCube  irradiance, linear
 //     4  storage buffer  entries           9  texture2D    shadow mask
-//     5  storage buffer  masks             10, 11          those of shadow_map.glsl
+//     5  storage buffer  masks             10, 11          those of shadow_map.glsl, if included
+//                                          12 to 15        those of light_blockers.glsl, likewise
 //
 // Then for each pixel:
 //
@@ -131,6 +134,20 @@ float hdrp_i_shadow(hdrp_light light, hdrp_light_incident i, hdrp_brdf_data d, v
     }
 #endif
     return 1.0;
+}
+
+// Whether blockers keep a light from a position. entry is that of a light that is listed.
+bool hdrp_i_is_blocked(uint light, bool is_listed, uint entry, vec3 position)
+{
+#ifdef HDRP_LIGHT_BLOCKERS
+    bool has_blockers = hdrp_i_has(HDRP_GPU_VK_WORD_BLOCKERS) &&
+                        (lighting.lights.w & HDRP_GPU_VK_WORD_BLOCKERS) != 0u;
+    if (has_blockers && light < lighting.kinds.z) {
+        uint mask = is_listed ? blocker_masks[entry] : 0xffffffffu;
+        return is_light_blocked(light, mask, hdrp_cull_light_place(lights[light]), position);
+    }
+#endif
+    return false;
 }
 
 // What a loop keeps of a view for each light, in half the registers: smooth factors of at most a
@@ -302,7 +319,8 @@ void hdrp_i_add_lights(inout hdrp_lit_surface r, hdrp_brdf_data d, hdrp_brdf_lit
         if (visible > 0.0 &&
             hdrp_light_affects(lights[light], covered.block_layers & 0xffffu) != 0u) {
             hdrp_light_incident i = hdrp_i_incident(lights[light], position);
-            if (hdrp_v3_max_component(i.illuminance) > 0.0 && hdrp_i_is_lit(d, i.l)) {
+            if (hdrp_v3_max_component(i.illuminance) > 0.0 && hdrp_i_is_lit(d, i.l) &&
+                !hdrp_i_is_blocked(light, is_listed, first + (k - everywhere), position)) {
                 visible *= is_listed ? hdrp_i_shadow(lights[light], i, d, position) : 1.0;
                 hdrp_i_add_light(r, d, w, kept, lights[light], i, visible);
             }

@@ -184,8 +184,10 @@ static bool has_what_is_needed(rd_vk_device* d)
         return rd_fail(d->report, device, "cannot draw to R11G11B10");
     }
     if (d->properties.limits.maxColorAttachments < 7u ||
-        d->properties.limits.maxPerStageDescriptorSamplers < 24u) {
-        return rd_fail(d->report, device, "has too few colour attachments or samplers");
+        d->properties.limits.maxPerStageDescriptorSamplers < 24u ||
+        d->properties.limits.maxPerStageDescriptorStorageBuffers < 16u) {
+        return rd_fail(d->report, device,
+                       "has too few colour attachments, samplers or storage buffers");
     }
     return true;
 }

@@ -214,6 +214,18 @@ static void describe_shadows(const rd_vk_light* l, hdrp_gpu_vk_lighting* d, int 
     }
 }
 
+/* Without lists all blockers are asked, and no mask is read. */
+static void describe_blockers(rd_vk_light* l, int which)
+{
+    hdrp_gpu_vk_blockers* b = &l->blockers[which];
+    *b = rd_vk_lists_blockers(&l->lists, which);
+    if (b->light_count > 0u && b->masks.buffer == VK_NULL_HANDLE) {
+        b->masks.buffer = l->nothing.buffer;
+        b->masks.bytes = l->nothing.bytes;
+    }
+    l->desc[which].blockers = b->light_count > 0u ? b : NULL;
+}
+
 static void describe(rd_vk_light* l, const rd_vk_raster* raster, int which)
 {
     hdrp_gpu_vk_lighting* d = &l->desc[which];
@@ -236,6 +248,7 @@ static void describe(rd_vk_light* l, const rd_vk_raster* raster, int which)
     d->fgd = l->fgd.view;
     d->fgd_size = RD_FGD_SIZE;
     describe_shadows(l, d, which);
+    describe_blockers(l, which);
     d->specular = l->specular.base.view;
     d->specular_levels = l->specular.levels;
     d->irradiance = l->irradiance.base.view;

@@ -24,7 +24,8 @@
 #define RD_VK_BIND_KINDS      15u
 #define RD_VK_BIND_DEPTH      16u
 #define RD_VK_BIND_LAYERS     17u /* from here on RD_VK_LAYER_... */
-#define RD_VK_BIND_COUNT      22u
+#define RD_VK_BIND_BLOCKERS   22u /* four of shaders/light_blockers.glsl */
+#define RD_VK_BIND_COUNT      26u
 
 /* A grid of lists in buffers. */
 typedef struct rd_vk_grid {
@@ -47,6 +48,7 @@ typedef struct rd_vk_light {
     hdrp_gpu_vk_variants variants;
     hdrp_gpu_vk_tiles tiles;
     hdrp_gpu_vk_lighting desc[2]; /* of opaque surfaces, of layers */
+    hdrp_gpu_vk_blockers blockers[2];
     rd_vk_grid grids[2];
     VkDescriptorSetLayout layout;
     VkDescriptorPool pool;

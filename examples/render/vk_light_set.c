@@ -3,12 +3,18 @@
 
 #include <string.h>
 
+static bool is_buffer(uint32_t binding)
+{
+    return binding <= RD_VK_BIND_MASKS || binding == RD_VK_BIND_VIEWS ||
+           binding >= RD_VK_BIND_BLOCKERS;
+}
+
 static VkDescriptorType type_of(uint32_t binding)
 {
     if (binding == RD_VK_BIND_PARAMS) {
         return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     }
-    if (binding <= RD_VK_BIND_MASKS || binding == RD_VK_BIND_VIEWS) {
+    if (is_buffer(binding)) {
         return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     }
     return binding == RD_VK_BIND_SUN_MASK || binding == RD_VK_BIND_KINDS ||
@@ -39,7 +45,7 @@ bool rd_vk_light_layout_make(rd_vk_light* l, rd_vk_device* d)
 bool rd_vk_light_sets_make(rd_vk_light* l, rd_vk_device* d)
 {
     const VkDescriptorPoolSize sizes[4] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2},
-                                           {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 12},
+                                           {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 20},
                                            {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 18},
                                            {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 14}};
     const VkDescriptorPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
@@ -89,6 +95,14 @@ static VkDescriptorImageInfo image_info(const rd_vk_light* l, const rd_vk_raster
     return info;
 }
 
+/* In the order of shaders/light_blockers.glsl. */
+static hdrp_gpu_vk_array blocker_array(const rd_vk_light* l, int which, uint32_t index)
+{
+    const hdrp_gpu_vk_blockers* b = &l->blockers[which];
+    const hdrp_gpu_vk_array arrays[4] = {b->masks, b->lights, b->links, b->blockers};
+    return arrays[index];
+}
+
 static VkDescriptorBufferInfo buffer_info(const rd_vk_light* l, int which, uint32_t binding)
 {
     const rd_vk_grid* g = &l->grids[which];
@@ -97,8 +111,15 @@ static VkDescriptorBufferInfo buffer_info(const rd_vk_light* l, int which, uint3
         l->shadow.present ? l->shadow.buffer.buffer.buffer : l->nothing.buffer, 0};
     const hdrp_gpu_vk_range params = {l->params[which].buffer.buffer, 0};
     const hdrp_gpu_vk_range ranges[6] = {params, records, g->tiles, g->cells, g->entries, g->masks};
-    const hdrp_gpu_vk_range* at = binding == RD_VK_BIND_VIEWS ? &views : &ranges[binding];
-    VkDescriptorBufferInfo info = {at->buffer, at->offset, VK_WHOLE_SIZE};
+    VkDescriptorBufferInfo info = {l->nothing.buffer, 0, VK_WHOLE_SIZE};
+    if (binding >= RD_VK_BIND_BLOCKERS) {
+        hdrp_gpu_vk_array a = blocker_array(l, which, binding - RD_VK_BIND_BLOCKERS);
+        info.buffer = a.buffer ? a.buffer : info.buffer;
+    } else {
+        const hdrp_gpu_vk_range* at = binding == RD_VK_BIND_VIEWS ? &views : &ranges[binding];
+        info.buffer = at->buffer;
+        info.offset = at->offset;
+    }
     return info;
 }
 
@@ -112,7 +133,7 @@ void rd_vk_light_set_write(const rd_vk_light* l, rd_vk_device* d, const rd_vk_ra
             .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, .dstBinding = i, .descriptorCount = 1};
         write.dstSet = l->sets[which];
         write.descriptorType = type_of(i);
-        if (i <= RD_VK_BIND_MASKS || i == RD_VK_BIND_VIEWS) {
+        if (is_buffer(i)) {
             buffer = buffer_info(l, which, i);
             write.pBufferInfo = &buffer;
         } else {

@@ -62,6 +62,7 @@ typedef struct scene_desc {
     bool split, environment, harmonics, table, masked;
     bool srgb;  /* RT0 has the format that it is made for */
     bool atlas; /* of shadow maps with random depths */
+    bool blockers;
 } scene_desc;
 
 typedef struct scene {
@@ -83,6 +84,9 @@ typedef struct scene {
     hdrp_shadow_view* views;
     uint32_t view_count;
     float* atlas; /* depths */
+    hdrp_cull_blocker_scene blocked;
+    uint32_t* blocker_masks; /* of entries */
+    uint64_t blocked_pixels; /* bits in them */
 } scene;
 
 static size_t pixels_of(const scene* s)
@@ -241,6 +245,71 @@ static void make_lists(scene* s)
     free(shapes);
 }
 
+#define WALLS            24u
+#define PORTALS          8u
+#define BLOCKERS_A_LIGHT 3u
+
+/* Walls, of which a few have a window, and which of them keep each light away, be it in a list or
+ * not. Every fifth has none. */
+static void make_blockers(scene* s)
+{
+    uint32_t count = s->desc.lights + s->desc.directional;
+    hdrp_cull_blocker* walls = malloc((WALLS + PORTALS) * sizeof *walls);
+    hdrp_v4* places = malloc(count * sizeof *places);
+    hdrp_cull_blocker_links* own = malloc(count * sizeof *own);
+    uint32_t* links = malloc(count * BLOCKERS_A_LIGHT * sizeof *links);
+    assert_true(walls && places && own && links);
+    for (uint32_t i = 0; i < WALLS; ++i) {
+        hdrp_v3 at = any_place(s), front = any_direction(), up = any_direction();
+        walls[i] = i % 6u == 5u ? hdrp_cull_blocker_plane(at, front)
+                                : hdrp_cull_blocker_rectangle(at, front, up, between(1.0f, 6.0f),
+                                                              between(1.0f, 6.0f));
+        if (i % 3u == 0u) {
+            uint32_t first = WALLS + i / 3u;
+            walls[first] = hdrp_cull_blocker_rectangle(at, front, up, 1.5f, 1.0f);
+            walls[i] = hdrp_cull_blocker_with_portals(walls[i], first, i % 6u ? 1u : 0u);
+        }
+    }
+    for (uint32_t i = 0; i < count; ++i) {
+        places[i] = hdrp_cull_light_place(s->lights[i]);
+        own[i].first = i * BLOCKERS_A_LIGHT;
+        own[i].count = i % 5u == 4u ? 0u : 1u + i % BLOCKERS_A_LIGHT;
+        for (uint32_t k = 0; k < BLOCKERS_A_LIGHT; ++k) {
+            links[i * BLOCKERS_A_LIGHT + k] = below(WALLS);
+        }
+    }
+    s->blocked = (hdrp_cull_blocker_scene){
+        places, own, links, walls, count, count * BLOCKERS_A_LIGHT, WALLS + PORTALS};
+}
+
+/* Lights leave cells, and masks say what is left for pixels. */
+static void apply_blockers(scene* s)
+{
+    hdrp_u32x4 tiles = s->lists.grid.tiles;
+    const hdrp_cull_blocker_desc limits = {s->blocked.light_count, s->blocked.link_count,
+                                           s->blocked.blocker_count};
+    size_t bytes = hdrp_cull_blocker_memory_size(&limits);
+    void *memory = aligned(bytes), *scratch;
+    hdrp_cull_blocker_set set;
+    hdrp_cull_blocker_job job;
+    s->blocker_masks =
+        calloc((size_t)tiles.z * tiles.w * s->lists.grid.cells.y, sizeof *s->blocker_masks);
+    assert_non_null(s->blocker_masks);
+    assert_int_equal(hdrp_cull_blocker_init(&set, &limits, memory, bytes), HDRP_OK);
+    assert_int_equal(hdrp_cull_blocker_begin(&set, &s->blocked, &s->camera), HDRP_OK);
+    assert_int_equal(
+        hdrp_cull_blocker_project(&set, 0, s->blocked.light_count + s->blocked.blocker_count),
+        HDRP_OK);
+    bytes = hdrp_cull_blocker_scratch_size(&set);
+    scratch = aligned(bytes);
+    assert_int_equal(hdrp_cull_blocker_job_begin(&job, &set, scratch, bytes), HDRP_OK);
+    assert_int_equal(
+        hdrp_cull_apply_blockers(&s->lists, &job, 0, tiles.z * tiles.w, s->blocker_masks), HDRP_OK);
+    s->blocked_pixels = job.stats.pixel;
+    free(memory);
+    free(scratch);
+}
+
 #define MAP_PX   16u
 #define ATLAS_PX 512u
 
@@ -330,6 +399,10 @@ static scene make_scene(const scene_desc* desc)
         make_atlas(&s);
     }
     make_lists(&s);
+    if (desc->blockers) {
+        make_blockers(&s);
+        apply_blockers(&s);
+    }
     if (desc->environment) {
         make_environment(&s);
     }
@@ -349,6 +422,11 @@ static void free_scene(scene* s)
     free(s->env_memory);
     free(s->views);
     free(s->atlas);
+    free(s->blocker_masks);
+    free((void*)s->blocked.places);
+    free((void*)s->blocked.lights);
+    free((void*)s->blocked.links);
+    free((void*)s->blocked.blockers);
 }
 
 /* ---- the CPU --------------------------------------------------------------------------------- */
@@ -365,7 +443,8 @@ static uint32_t frame_word(const scene* s)
     return (s->lists.desc.slice_count > 1u ? HDRP_GPU_VK_WORD_SLICES : 0u) |
            (s->desc.directional ? HDRP_GPU_VK_WORD_DIRECTIONAL : 0u) |
            (s->desc.directional && s->desc.masked ? HDRP_GPU_VK_WORD_SHADOW_MASK : 0u) |
-           (s->desc.environment ? HDRP_GPU_VK_WORD_ENVIRONMENT : 0u);
+           (s->desc.environment ? HDRP_GPU_VK_WORD_ENVIRONMENT : 0u) |
+           (s->desc.blockers ? HDRP_GPU_VK_WORD_BLOCKERS : 0u);
 }
 
 /* Words of tiles by the functions of the CPU. */
@@ -465,6 +544,9 @@ static cpu_pixel shade(const scene* s, uint32_t x, uint32_t y)
             view += hdrp_shadow_map_of_direction(*view, hdrp_v3_neg(in.l));
             visible *= hdrp_shadow_visibility(&atlas, view, place, d.normal);
         }
+        if (s->desc.blockers) {
+            visible *= hdrp_cull_blocker_light_visible(&s->blocked, i, UINT32_MAX, place);
+        }
         visible *= hdrp_light_sign(s->lights[i]);
         lit = hdrp_brdf_lit_eval(d, hdrp_brdf_lit_view_widened(w, variance), in.l, d.features);
         out.diffuse = hdrp_v3_mad(out.diffuse, hdrp_v3_mul(in.illuminance, lit.diffuse), visible);
@@ -491,6 +573,10 @@ enum {
     BUFFER_MASKS,
     BUFFER_VIEWS,
     BUFFER_ATLAS,
+    BUFFER_BLOCKER_LIGHTS,
+    BUFFER_LINKS,
+    BUFFER_BLOCKERS,
+    BUFFER_BLOCKER_MASKS,
     BUFFERS
 };
 
@@ -499,6 +585,7 @@ typedef struct on_device {
     hdrp_gpu_vk_buffer uploads[IMAGES], buffers[BUFFERS], params, cube_uploads[2];
     hdrp_gpu_vk_image cubes[2];
     hdrp_gpu_vk_image fgd, color, diffuse, atlas;
+    hdrp_gpu_vk_blockers blockers;
     hdrp_gpu_vk_lighting lighting;
     hdrp_gpu_vk_tiles tiles;
 } on_device;
@@ -606,6 +693,29 @@ static void upload_cube(VkCommandBuffer commands, const hdrp_env_cube* cube,
                  VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
 }
 
+static hdrp_gpu_vk_array filled_array(on_device* o, int k, const void* data, size_t bytes)
+{
+    hdrp_gpu_vk_array a = {VK_NULL_HANDLE, 0, bytes};
+    o->buffers[k] = filled_buffer(data, bytes);
+    a.buffer = o->buffers[k].buffer;
+    return a;
+}
+
+static void make_blocker_buffers(const scene* s, on_device* o)
+{
+    const hdrp_cull_blocker_scene* b = &s->blocked;
+    hdrp_u32x4 tiles = s->lists.grid.tiles;
+    size_t entries = (size_t)tiles.z * tiles.w * s->lists.grid.cells.y;
+    o->blockers.lights =
+        filled_array(o, BUFFER_BLOCKER_LIGHTS, b->lights, b->light_count * sizeof *b->lights);
+    o->blockers.links = filled_array(o, BUFFER_LINKS, b->links, b->link_count * sizeof *b->links);
+    o->blockers.blockers =
+        filled_array(o, BUFFER_BLOCKERS, b->blockers, b->blocker_count * sizeof *b->blockers);
+    o->blockers.masks =
+        filled_array(o, BUFFER_BLOCKER_MASKS, s->blocker_masks, entries * sizeof *s->blocker_masks);
+    o->blockers.light_count = b->light_count;
+}
+
 static void make_buffers(const scene* s, on_device* o)
 {
     const hdrp_cull_lists* l = &s->lists;
@@ -621,6 +731,9 @@ static void make_buffers(const scene* s, on_device* o)
     if (l->masks) {
         o->buffers[BUFFER_MASKS] =
             filled_buffer(l->masks, entries * hdrp_cull_mask_words(l->grid) * sizeof *l->masks);
+    }
+    if (s->desc.blockers) {
+        make_blocker_buffers(s, o);
     }
     if (s->desc.atlas) {
         o->buffers[BUFFER_VIEWS] = filled_buffer(s->views, s->view_count * sizeof *s->views);
@@ -680,6 +793,7 @@ static void set_lighting(const scene* s, on_device* o)
     l->sh = s->sh;
     l->split = s->desc.split;
     l->exposure = s->exposure;
+    l->blockers = s->desc.blockers ? &o->blockers : NULL;
     memcpy(l->slab_colors, s->slabs, sizeof s->slabs);
 }
 
@@ -695,47 +809,45 @@ static hdrp_gpu_vk_image output_image(const scene* s)
     return image;
 }
 
-static on_device to_device(const scene* s)
+static void to_device(const scene* s, on_device* o)
 {
-    on_device o;
     const hdrp_pack_gbuffer_texel* t = s->texels;
-    memset(&o, 0, sizeof o);
+    memset(o, 0, sizeof *o);
     if (s->desc.srgb) {
-        make_image(s, &o, 0, VK_FORMAT_R8G8B8A8_SRGB, 4, &t->rt0, sizeof *t);
+        make_image(s, o, 0, VK_FORMAT_R8G8B8A8_SRGB, 4, &t->rt0, sizeof *t);
     } else { /* what the CPU reads: devices decode sRGB as coarsely as its codes allow */
         hdrp_v4* linear = malloc(pixels_of(s) * sizeof *linear);
         assert_non_null(linear);
         for (size_t i = 0; i < pixels_of(s); ++i) {
             linear[i] = hdrp_pack_linear_from_srgba8(t[i].rt0);
         }
-        make_image(s, &o, 0, VK_FORMAT_R32G32B32A32_SFLOAT, sizeof *linear, linear, sizeof *linear);
+        make_image(s, o, 0, VK_FORMAT_R32G32B32A32_SFLOAT, sizeof *linear, linear, sizeof *linear);
         free(linear);
     }
-    make_image(s, &o, 1, VK_FORMAT_R8G8B8A8_UNORM, 4, &t->rt1, sizeof *t);
-    make_image(s, &o, 2, VK_FORMAT_R8G8B8A8_UNORM, 4, &t->rt2, sizeof *t);
-    make_image(s, &o, 3, VK_FORMAT_B10G11R11_UFLOAT_PACK32, 4, &t->rt3, sizeof *t);
-    make_image(s, &o, 4, VK_FORMAT_R8G8B8A8_UNORM, 4, &t->rt4, sizeof *t);
-    make_image(s, &o, IMAGE_DEPTH, VK_FORMAT_R32_SFLOAT, 4, s->depths, 4);
-    make_image(s, &o, IMAGE_KINDS, VK_FORMAT_R8_UINT, 1, s->kinds, 1);
-    make_image(s, &o, IMAGE_OCCLUSION, VK_FORMAT_R8_UNORM, 1, s->occlusion, 1);
-    make_image(s, &o, IMAGE_SHADOW, VK_FORMAT_R8_UNORM, 1, s->shadow, 1);
-    make_buffers(s, &o);
+    make_image(s, o, 1, VK_FORMAT_R8G8B8A8_UNORM, 4, &t->rt1, sizeof *t);
+    make_image(s, o, 2, VK_FORMAT_R8G8B8A8_UNORM, 4, &t->rt2, sizeof *t);
+    make_image(s, o, 3, VK_FORMAT_B10G11R11_UFLOAT_PACK32, 4, &t->rt3, sizeof *t);
+    make_image(s, o, 4, VK_FORMAT_R8G8B8A8_UNORM, 4, &t->rt4, sizeof *t);
+    make_image(s, o, IMAGE_DEPTH, VK_FORMAT_R32_SFLOAT, 4, s->depths, 4);
+    make_image(s, o, IMAGE_KINDS, VK_FORMAT_R8_UINT, 1, s->kinds, 1);
+    make_image(s, o, IMAGE_OCCLUSION, VK_FORMAT_R8_UNORM, 1, s->occlusion, 1);
+    make_image(s, o, IMAGE_SHADOW, VK_FORMAT_R8_UNORM, 1, s->shadow, 1);
+    make_buffers(s, o);
     if (s->desc.environment) {
-        make_cube(&s->env.specular, &o.cubes[0], &o.cube_uploads[0]);
-        make_cube(&s->env.irradiance, &o.cubes[1], &o.cube_uploads[1]);
+        make_cube(&s->env.specular, &o->cubes[0], &o->cube_uploads[0]);
+        make_cube(&s->env.irradiance, &o->cubes[1], &o->cube_uploads[1]);
     }
     if (s->desc.table) {
         assert_int_equal(
             hdrp_gpu_vk_image_create(&gpu, VK_FORMAT_R32G32_SFLOAT, FGD_SIZE, FGD_SIZE,
                                      VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT, "fgd",
-                                     &o.fgd),
+                                     &o->fgd),
             HDRP_OK);
     }
-    o.color = output_image(s);
-    o.diffuse = output_image(s);
-    assert_int_equal(hdrp_gpu_vk_tiles_create(&gpu, s->lists.grid, &o.tiles), HDRP_OK);
-    set_lighting(s, &o);
-    return o;
+    o->color = output_image(s);
+    o->diffuse = output_image(s);
+    assert_int_equal(hdrp_gpu_vk_tiles_create(&gpu, s->lists.grid, &o->tiles), HDRP_OK);
+    set_lighting(s, o);
 }
 
 static void free_device(on_device* o)
@@ -812,7 +924,7 @@ static void expect_classified(const scene_desc* desc, const hdrp_gpu_vk_variants
                               const uint32_t* masks, uint32_t count, uint32_t* uncovered)
 {
     scene s = make_scene(desc);
-    on_device o = to_device(&s);
+    on_device o;
     uint32_t tiles = s.lists.grid.tiles.z * s.lists.grid.tiles.w;
     uint32_t* words = cpu_words(&s);
     uint8_t* chosen = malloc(tiles);
@@ -832,6 +944,7 @@ static void expect_classified(const scene_desc* desc, const hdrp_gpu_vk_variants
     assert_int_equal(
         hdrp_cull_build_dispatch(&dispatch, chosen, s.lists.grid.tiles.z, s.lists.grid.tiles.w),
         HDRP_OK);
+    to_device(&s, &o);
     commands = begin(&s, &o);
     assert_int_equal(hdrp_gpu_vk_classify(&gpu, commands, &o.lighting, &made, &o.tiles), HDRP_OK);
     back[0] = copied(commands, &o.tiles.words);
@@ -876,6 +989,7 @@ static void tiles_are_classified_as_on_the_cpu(void** state)
         {.width = 203, .height = 150, .tile = 32, .lights = 200, .materials = 5u, .slices = 8},
         {.width = 75, .height = 65, .tile = 5, .lights = 0, .materials = 31u, .plain = true},
         {.width = 64, .height = 64, .tile = 16, .lights = 20, .sky_only = true},
+        {.width = 64, .height = 64, .tile = 16, .lights = 20, .blockers = true},
         {.width = 640, .height = 500, .tile = 8, .lights = 30, .materials = 31u}, /* many tiles */
     };
     uint32_t masks[HDRP_CULL_VARIANT_MAX];
@@ -913,13 +1027,17 @@ static void clear(VkCommandBuffer commands, const hdrp_gpu_vk_image* image, floa
 /* What deferred lighting writes, and into the second half the diffuse part. */
 static hdrp_v4* light(const scene* s, const hdrp_gpu_vk_variants* variants)
 {
-    on_device o = to_device(s);
+    on_device o;
     size_t bytes = pixels_of(s) * sizeof(hdrp_v4);
     hdrp_v4* result = malloc(2u * bytes);
     hdrp_gpu_vk_buffer back[2];
-    hdrp_gpu_vk_lit lit = {o.color.view, s->desc.split ? o.diffuse.view : VK_NULL_HANDLE};
-    VkCommandBuffer commands = begin(s, &o);
+    hdrp_gpu_vk_lit lit = {VK_NULL_HANDLE, VK_NULL_HANDLE};
+    VkCommandBuffer commands;
     assert_non_null(result);
+    to_device(s, &o);
+    lit.color = o.color.view;
+    lit.diffuse = s->desc.split ? o.diffuse.view : VK_NULL_HANDLE;
+    commands = begin(s, &o);
     clear(commands, &o.color, UNTOUCHED);
     clear(commands, &o.diffuse, UNTOUCHED);
     assert_int_equal(hdrp_gpu_vk_classify(&gpu, commands, &o.lighting, variants, &o.tiles),
@@ -957,6 +1075,7 @@ static void expect_lit(const char* name, const scene_desc* desc,
     hdrp_v4* found = light(&s, variants);
     double error = 0.0, reference = 0.0, worst = 0.0;
     uint32_t lit = 0, apart = 0;
+    assert_true(!desc->blockers || s.blocked_pixels > 100);
     for (size_t i = 0; i < pixels_of(&s); ++i) {
         uint32_t x = (uint32_t)(i % desc->width), y = (uint32_t)(i / desc->width);
         hdrp_v3 sum = hdrp_v3_from_v4(found[i]), difference, expected;
@@ -1045,6 +1164,17 @@ static void pixels_are_lit_as_on_the_cpu(void** state)
          {.width = 64, .height = 48, .tile = 32, .lights = 100, .materials = 31u, .slices = 16}},
         {"shadows",
          {.width = 64, .height = 40, .tile = 16, .lights = 200, .materials = 16u, .atlas = true}},
+        {"blockers",
+         {.width = 75,
+          .height = 50,
+          .tile = 16,
+          .lights = 80,
+          .directional = 2,
+          .materials = 16u,
+          .list_flags = HDRP_CULL_PIXELS | HDRP_CULL_BLOCKS | HDRP_CULL_MASKS,
+          .blockers = true}},
+        {"blockers in slices",
+         {.width = 64, .height = 48, .tile = 32, .lights = 60, .slices = 8, .blockers = true}},
         {"sky", {.width = 40, .height = 30, .tile = 16, .lights = 5, .sky_only = true}},
     };
     hdrp_gpu_vk_variants variants = make_variants(words, 2);
@@ -1127,6 +1257,28 @@ static void expect_missing_pointers_are_refused(const on_device* o, const hdrp_g
                      HDRP_ERROR_NULL_POINTER);
 }
 
+static void expect_bad_blockers_are_refused(const on_device* o, const hdrp_gpu_vk_variants* v)
+{
+#define REFUSED(change, expected)                                                                  \
+    bad = o->blockers;                                                                             \
+    bad.change;                                                                                    \
+    expect_refused(o, v, &lighting, expected)
+    hdrp_gpu_vk_lighting lighting = o->lighting;
+    hdrp_gpu_vk_blockers bad;
+    lighting.blockers = &bad;
+    REFUSED(lights.buffer = VK_NULL_HANDLE, HDRP_ERROR_NULL_POINTER);
+    REFUSED(links.buffer = VK_NULL_HANDLE, HDRP_ERROR_NULL_POINTER);
+    REFUSED(blockers.buffer = VK_NULL_HANDLE, HDRP_ERROR_NULL_POINTER);
+    REFUSED(masks.buffer = VK_NULL_HANDLE, HDRP_ERROR_NULL_POINTER);
+    REFUSED(lights.bytes -= 1u, HDRP_ERROR_BAD_ARGUMENT);
+    REFUSED(light_count += 1u, HDRP_ERROR_BAD_ARGUMENT);
+    REFUSED(links.bytes = 3u, HDRP_ERROR_BAD_ARGUMENT);
+    REFUSED(blockers.bytes = 79u, HDRP_ERROR_BAD_ARGUMENT);
+    REFUSED(masks.bytes -= 4u, HDRP_ERROR_BAD_ARGUMENT);
+    REFUSED(masks.offset = 1u, HDRP_ERROR_BAD_ARGUMENT);
+#undef REFUSED
+}
+
 /* Each in turn, with one member that is not what it should be. */
 static void expect_bad_members_are_refused(const on_device* o, const hdrp_gpu_vk_variants* v)
 {
@@ -1159,6 +1311,7 @@ static void expect_bad_members_are_refused(const on_device* o, const hdrp_gpu_vk
     REFUSED(exposure = INFINITY, HDRP_ERROR_BAD_ARGUMENT);
     REFUSED(params_offset = 16, HDRP_ERROR_BAD_ARGUMENT);
     REFUSED(lights.offset = 1, HDRP_ERROR_BAD_ARGUMENT);
+    expect_bad_blockers_are_refused(o, v);
     bad = o->lighting;
     bad.fgd = o->color.view;
     bad.fgd_size = 1u;
@@ -1168,21 +1321,24 @@ static void expect_bad_members_are_refused(const on_device* o, const hdrp_gpu_vk
     bad = o->lighting;
     bad.grid.cells.x = HDRP_CULL_SLICES_MAX;
     bad.grid.cells.y = 0xffffffffu;
+    bad.blockers = NULL;
     expect_refused(o, v, &bad, HDRP_ERROR_TOO_LARGE);
 #undef REFUSED
 }
 
 static void what_cannot_be_lit_is_refused(void** state)
 {
-    const scene_desc desc = {.width = 32, .height = 16, .tile = 16, .lights = 2, .plain = true};
+    const scene_desc desc = {
+        .width = 32, .height = 16, .tile = 16, .lights = 12, .plain = true, .blockers = true};
     const uint32_t words[] = {HDRP_GPU_VK_WORD_LIT, HDRP_GPU_VK_WORD_LIT};
     hdrp_gpu_vk_variants v = make_variants(words, 2), other;
     hdrp_gpu_vk small = gpu;
     hdrp_gpu_vk_tiles tiles;
     hdrp_cull_grid grid;
     scene s = make_scene(&desc);
-    on_device o = to_device(&s);
+    on_device o;
     (void)state;
+    to_device(&s, &o);
     assert_int_equal(hdrp_gpu_vk_begin_frame(&gpu, 0), HDRP_OK);
     gpu_begin(&device);
     expect_missing_pointers_are_refused(&o, &v);

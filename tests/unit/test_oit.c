@@ -618,6 +618,36 @@ static void exports_go_by_their_weights(void** state)
     assert_color(hdrp_oit_talk_composite(d, v3(1, 1, 1)), v3(1.3125f, 1.78125f, 0.5f), 2.0);
 }
 
+/* Each mode by its own text: published equations written out here, others by what they call. */
+static void modes_choose_their_weights(void** state)
+{
+    const hdrp_oit_talk_settings s = hdrp_oit_talk_settings_make(0.5f, 2.0f);
+    const double alpha = 0.375, z = 20.0, depth = 0.75;
+    hdrp_oit_fragment f = fragment(v3(1, 0.5f, 0), v3(0, 1, 0), (float)alpha, (float)z);
+    const double expected[HDRP_OIT_MODE_COUNT] = {
+        (double)hdrp_oit_weight(f.z_view, f.alpha),
+        (double)hdrp_oit_weight(f.z_view, f.alpha),
+        (double)hdrp_oit_weight(f.z_view, f.alpha),
+        (double)hdrp_oit_weight(f.z_view, f.alpha),
+        (double)hdrp_oit_weight(f.z_view, f.alpha),
+        alpha * 10.0 / (1e-5 + pow(z / 5.0, 2.0) + pow(z / 200.0, 6.0)),
+        alpha * 10.0 / (1e-5 + pow(z / 10.0, 3.0) + pow(z / 200.0, 6.0)),
+        alpha * 0.03 / (1e-5 + pow(z / 200.0, 4.0)),
+        alpha * 3e3 * pow(1.0 - depth, 3.0),
+        3000.0, /* the limit: 1.01^3 * 1e8 * (1 - 0.9 * 0.75)^3 is more */
+        (double)hdrp_oit_talk_weight(f, s),
+        (double)hdrp_oit_weight(f.z_view, f.alpha)};
+    (void)state;
+    for (uint32_t mode = 0; mode < HDRP_OIT_MODE_COUNT; ++mode) {
+        float w = hdrp_oit_mode_weight(mode, f, (float)depth, s);
+        assert_true(fabs((double)w - expected[mode]) <= 2e-6 * expected[mode]);
+    }
+    assert_true(hdrp_oit_mode_weight(HDRP_OIT_MODE_COUNT, f, 0.5f, s) == (float)expected[0]);
+    f.alpha = 0.05f;
+    assert_true(hdrp_oit_mode_weight(HDRP_OIT_MODE_2015, f, 0.999f, s) ==
+                hdrp_oit_weight_2015(0.999f, 0.05f));
+}
+
 static void the_front_is_kept_apart(void** state)
 {
     hdrp_oit_fragment f = fragment(v3(1, 0.5f, 0), v3(0, 1, 0), 0.5f, 20.0f);
@@ -662,6 +692,7 @@ int main(void)
         cmocka_unit_test(bad_descriptions_are_rejected),
         cmocka_unit_test(the_front_is_kept_apart),
         cmocka_unit_test(exports_go_by_their_weights),
+        cmocka_unit_test(modes_choose_their_weights),
     };
     return cmocka_run_group_tests_name("oit", tests, NULL, NULL);
 }
