@@ -1,5 +1,5 @@
-// The pass of colour: what a surface reflects where it covers, and what it emits. Light is times the
-// exposure, as in the picture behind it.
+// The pass of colour: what a surface sends to the viewer, times the exposure, as the picture behind
+// it is.
 #extension GL_GOOGLE_include_directive : require
 #include "forward.glsl"
 #include "oit.glsl"
@@ -9,8 +9,7 @@ void main()
     Surface s = oit_surface(triangle);
     uvec2 pixel = uvec2(clamp(oit_place(), vec2(0.0), frame.jitter_size.zw - 1.0));
     hdrp_lit_surface lit = lit_surface_at(s, engine_data(s), pixel);
-    vec3 reflected = (lit.diffuse + lit.specular) * frame.depths_exposure.z;
-    vec3 emitted = emission_nits(s) * frame.depths_exposure.z;
-    hdrp_oit_write(hdrp_oit_fragment_make(reflected * s.coverage, emitted * s.alpha, s.coverage,
-                                          oit_z_view()));
+    vec3 light = (lit.diffuse + lit.specular + emission_nits(s)) * frame.depths_exposure.z;
+    // What is emitted in proportion to alpha is hidden like the rest of the colour.
+    hdrp_oit_write(hdrp_oit_fragment_make(light * s.alpha, vec3(0.0), s.coverage, oit_z_view()));
 }
