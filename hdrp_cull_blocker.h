@@ -623,11 +623,8 @@ HDRP_FN hdrp_v4 hdrp_i_cull_blocker_most(hdrp_v4 m, hdrp_v4 side)
                         hdrp_max(side.w, m.w));
 }
 
-/* The least of the most inside that four positions are. */
-HDRP_FN float hdrp_i_cull_blocker_least(hdrp_v4 a, hdrp_v4 b, hdrp_v4 c, hdrp_v4 d)
+HDRP_FN float hdrp_i_cull_blocker_least(hdrp_v4 m)
 {
-    hdrp_v4 m =
-        hdrp_i_cull_blocker_most(hdrp_i_cull_blocker_most(a, b), hdrp_i_cull_blocker_most(c, d));
     return hdrp_min(hdrp_min(m.x, m.y), hdrp_min(m.z, m.w));
 }
 
@@ -643,87 +640,110 @@ HDRP_FN float hdrp_i_cull_blocker_beside(hdrp_i_cull_blocker_pair s, hdrp_cull_t
         m = hdrp_i_cull_blocker_most(m, hdrp_i_cull_blocker_sides_along(
                                             tile, e, hdrp_i_cull_blocker_away(s, p), e.d_margin));
     }
-    return hdrp_min(hdrp_min(m.x, m.y), hdrp_min(m.z, m.w)) < 0.0f ? 1.0f : 0.0f;
+    return hdrp_i_cull_blocker_least(m) < 0.0f ? 1.0f : 0.0f;
 }
 
-/* The four edges of a tile. */
-struct hdrp_i_cull_blocker_frame {
-    hdrp_i_cull_blocker_edge a, b, c, d;
+/* An edge of a tile, of the four around it. */
+HDRP_FN hdrp_i_cull_blocker_edge hdrp_i_cull_blocker_edge_of(hdrp_i_cull_blocker_pair s,
+                                                             hdrp_cull_tile tile, hdrp_u32 i,
+                                                             hdrp_v3 z, float orthographic)
+{
+    float u = i == 1u || i == 2u ? tile.window.y : tile.window.x;
+    float v = i < 2u ? tile.window.z : tile.window.w;
+    return hdrp_i_cull_blocker_edge_make(s, u, v, z, orthographic);
+}
+
+/* What the edges of a tile say of it. Values that have been moved outwards are largest at an end;
+ * below -1 they are not told apart. */
+struct hdrp_i_cull_blocker_outline {
+    hdrp_cull_interval covered;
+    hdrp_v4 first, last; /* the most inside each side of the shadow that an end of an edge is */
+    float front;         /* likewise, of both ends */
 };
-HDRP_TYPEDEF(hdrp_i_cull_blocker_frame)
+HDRP_TYPEDEF(hdrp_i_cull_blocker_outline)
 
-/* 1 where all of the tile is outside one plane of the shadow. Values that have been moved outwards
- * are largest at an end. */
-HDRP_FN float hdrp_i_cull_blocker_apart(hdrp_i_cull_blocker_frame f)
+/* Edges are made one by one, and once more by what needs them: all of them are more than a GPU has
+ * registers for. */
+HDRP_FN hdrp_i_cull_blocker_outline hdrp_i_cull_blocker_outline_make(hdrp_i_cull_blocker_pair s,
+                                                                     hdrp_cull_tile tile, hdrp_v3 z,
+                                                                     float orthographic)
 {
-    float front = hdrp_max(hdrp_max(f.a.first.front, f.b.first.front),
-                           hdrp_max(f.c.first.front, f.d.first.front));
-    float last = hdrp_max(hdrp_max(f.a.last.front, f.b.last.front),
-                          hdrp_max(f.c.last.front, f.d.last.front));
-    hdrp_v4 a = hdrp_i_cull_blocker_most(f.a.first.side, f.a.last.side);
-    hdrp_v4 b = hdrp_i_cull_blocker_most(f.b.first.side, f.b.last.side);
-    hdrp_v4 c = hdrp_i_cull_blocker_most(f.c.first.side, f.c.last.side);
-    hdrp_v4 d = hdrp_i_cull_blocker_most(f.d.first.side, f.d.last.side);
-    float least = hdrp_min(hdrp_i_cull_blocker_least(a, b, c, d), hdrp_max(front, last));
-    return least < 0.0f ? 1.0f : 0.0f;
+    hdrp_i_cull_blocker_outline o;
+    hdrp_u32 i;
+    o.covered = hdrp_i_cull_blocker_interval(z.x, z.z);
+    o.first = hdrp_v4_make(-1.0f, -1.0f, -1.0f, -1.0f);
+    o.last = o.first;
+    o.front = -1.0f;
+    for (i = 0u; i < 4u; ++i) {
+        hdrp_i_cull_blocker_edge e = hdrp_i_cull_blocker_edge_of(s, tile, i, z, orthographic);
+        o.covered =
+            hdrp_i_cull_blocker_inside(o.covered, z, hdrp_i_cull_blocker_edge_moved(e, -1.0f));
+        e = hdrp_i_cull_blocker_edge_moved(e, 1.0f);
+        o.first = hdrp_i_cull_blocker_most(o.first, e.first.side);
+        o.last = hdrp_i_cull_blocker_most(o.last, e.last.side);
+        o.front = hdrp_max(hdrp_max(e.first.front, e.last.front), o.front);
+    }
+    return o;
 }
 
-/* Adds the far end, or the near one, of the tile where its outline enters the shadow. */
-HDRP_FN hdrp_cull_interval hdrp_i_cull_blocker_end(hdrp_cull_interval r, float z,
-                                                   hdrp_i_cull_blocker_at a,
-                                                   hdrp_i_cull_blocker_at b,
-                                                   hdrp_i_cull_blocker_at c,
-                                                   hdrp_i_cull_blocker_at d)
+/* 1 where all of the tile is outside one plane of the shadow. */
+HDRP_FN float hdrp_i_cull_blocker_apart(hdrp_i_cull_blocker_outline o)
 {
-    if (hdrp_i_cull_blocker_least(a.side, b.side, c.side, d.side) >= 0.0f) {
-        r = hdrp_i_cull_blocker_across(r, z, a, b);
-        r = hdrp_i_cull_blocker_across(r, z, b, c);
-        r = hdrp_i_cull_blocker_across(r, z, c, d);
-        r = hdrp_i_cull_blocker_across(r, z, d, a);
+    hdrp_v4 m = hdrp_i_cull_blocker_most(o.first, o.last);
+    return hdrp_min(hdrp_i_cull_blocker_least(m), o.front) < 0.0f ? 1.0f : 0.0f;
+}
+
+/* Adds where the edges of the tile are in the shadow, whose planes have been moved outwards, and
+ * the far end, or the near one, of the tile where its outline enters it. */
+HDRP_FN hdrp_cull_interval hdrp_i_cull_blocker_enter(hdrp_cull_interval r,
+                                                     hdrp_i_cull_blocker_pair s,
+                                                     hdrp_cull_tile tile, hdrp_v3 z,
+                                                     float orthographic,
+                                                     hdrp_i_cull_blocker_outline o)
+{
+    hdrp_cull_interval whole = hdrp_i_cull_blocker_interval(z.x, z.z);
+    float near_end =
+        orthographic > 0.0f && hdrp_i_cull_blocker_least(o.first) >= 0.0f ? 1.0f : 0.0f;
+    float far_end = hdrp_i_cull_blocker_least(o.last) >= 0.0f ? 1.0f : 0.0f;
+    hdrp_i_cull_blocker_edge before = hdrp_i_cull_blocker_edge_moved(
+        hdrp_i_cull_blocker_edge_of(s, tile, 3u, z, orthographic), 1.0f);
+    hdrp_u32 i;
+    for (i = 0u; i < 4u; ++i) {
+        hdrp_i_cull_blocker_edge e = hdrp_i_cull_blocker_edge_moved(
+            hdrp_i_cull_blocker_edge_of(s, tile, i, z, orthographic), 1.0f);
+        r = hdrp_i_cull_blocker_join(r, hdrp_i_cull_blocker_inside(whole, z, e));
+        if (far_end > 0.0f) {
+            r = hdrp_i_cull_blocker_across(r, z.z, before.last, e.last);
+        }
+        if (near_end > 0.0f) {
+            r = hdrp_i_cull_blocker_across(r, z.x, before.first, e.first);
+        }
+        before = e;
     }
     return r;
 }
 
-/* Where some of the tile is in the shadow, whose planes have been moved outwards: the nearest and
- * farthest places of two convex bodies that meet are on an edge of one of them. */
+/* Where some of the tile is in the shadow: the nearest and farthest places of two convex bodies
+ * that meet are on an edge of one of them. */
 HDRP_FN hdrp_cull_interval hdrp_i_cull_blocker_reached(hdrp_i_cull_blocker_pair s,
                                                        hdrp_cull_tile tile, hdrp_v3 z,
                                                        float orthographic,
-                                                       hdrp_i_cull_blocker_frame f)
+                                                       hdrp_i_cull_blocker_outline o)
 {
     hdrp_cull_interval r = hdrp_i_cull_blocker_nowhere();
-    hdrp_cull_interval whole = hdrp_i_cull_blocker_interval(z.x, z.z);
     float finite = s.blocker.bits.x == HDRP_CULL_BLOCKER_RECTANGLE ? 1.0f : 0.0f;
     hdrp_i_cull_blocker_edges e = hdrp_i_cull_blocker_edges_make(s, tile, z.z, orthographic);
-    float apart = hdrp_i_cull_blocker_apart(f);
+    float apart = hdrp_i_cull_blocker_apart(o);
     if (apart <= 0.0f && finite > 0.0f) {
         apart = hdrp_i_cull_blocker_beside(s, tile, e);
     }
     if (apart <= 0.0f) {
-        r = hdrp_i_cull_blocker_join(r, hdrp_i_cull_blocker_inside(whole, z, f.a));
-        r = hdrp_i_cull_blocker_join(r, hdrp_i_cull_blocker_inside(whole, z, f.b));
-        r = hdrp_i_cull_blocker_join(r, hdrp_i_cull_blocker_inside(whole, z, f.c));
-        r = hdrp_i_cull_blocker_join(r, hdrp_i_cull_blocker_inside(whole, z, f.d));
-        r = hdrp_i_cull_blocker_end(r, z.z, f.a.last, f.b.last, f.c.last, f.d.last);
-        if (orthographic > 0.0f) {
-            r = hdrp_i_cull_blocker_end(r, z.x, f.a.first, f.b.first, f.c.first, f.d.first);
-        }
+        r = hdrp_i_cull_blocker_enter(r, s, tile, z, orthographic, o);
         if (finite > 0.0f) {
             r = hdrp_i_cull_blocker_trace_all(r, s, tile, e);
         }
     }
     return r;
-}
-
-/* The edges of a tile, moved. */
-HDRP_FN hdrp_i_cull_blocker_frame hdrp_i_cull_blocker_frame_moved(hdrp_i_cull_blocker_frame f,
-                                                                  float factor)
-{
-    f.a = hdrp_i_cull_blocker_edge_moved(f.a, factor);
-    f.b = hdrp_i_cull_blocker_edge_moved(f.b, factor);
-    f.c = hdrp_i_cull_blocker_edge_moved(f.c, factor);
-    f.d = hdrp_i_cull_blocker_edge_moved(f.d, factor);
-    return f;
 }
 
 /* A pair that is not far away, with the light in front. */
@@ -733,21 +753,11 @@ HDRP_FN hdrp_cull_shadow hdrp_i_cull_blocker_cast(hdrp_i_cull_blocker_pair s, hd
     hdrp_cull_shadow r;
     hdrp_v3 z =
         hdrp_v3_make(0.0f, hdrp_clamp(s.blocker.center.z, 0.0f, depths.farthest), depths.farthest);
-    hdrp_v4 w = tile.window;
-    hdrp_i_cull_blocker_frame f, inner;
-    f.a = hdrp_i_cull_blocker_edge_make(s, w.x, w.z, z, orthographic);
-    f.b = hdrp_i_cull_blocker_edge_make(s, w.y, w.z, z, orthographic);
-    f.c = hdrp_i_cull_blocker_edge_make(s, w.y, w.w, z, orthographic);
-    f.d = hdrp_i_cull_blocker_edge_make(s, w.x, w.w, z, orthographic);
-    inner = hdrp_i_cull_blocker_frame_moved(f, -1.0f);
+    hdrp_i_cull_blocker_outline o = hdrp_i_cull_blocker_outline_make(s, tile, z, orthographic);
     r.reached = hdrp_i_cull_blocker_interval(z.x, z.z);
-    r.covered = hdrp_i_cull_blocker_inside(r.reached, z, inner.a);
-    r.covered = hdrp_i_cull_blocker_inside(r.covered, z, inner.b);
-    r.covered = hdrp_i_cull_blocker_inside(r.covered, z, inner.c);
-    r.covered = hdrp_i_cull_blocker_inside(r.covered, z, inner.d);
+    r.covered = o.covered;
     if (r.covered.nearest > depths.nearest || r.covered.farthest < depths.farthest) {
-        r.reached = hdrp_i_cull_blocker_reached(s, tile, z, orthographic,
-                                                hdrp_i_cull_blocker_frame_moved(f, 1.0f));
+        r.reached = hdrp_i_cull_blocker_reached(s, tile, z, orthographic, o);
     }
     return r;
 }
@@ -777,6 +787,7 @@ HDRP_FN hdrp_cull_shadow hdrp_cull_shadow_make(hdrp_cull_blocker blocker, hdrp_v
     hdrp_u32 kind = blocker.bits.x;
     float size = hdrp_max(s.center_size, s.half_size);
     float uncertain = 0.0f;
+    hdrp_u32 i;
     if (kind == HDRP_CULL_BLOCKER_RECTANGLE) {
         size = hdrp_max(s.light_size, size);
         uncertain = hdrp_abs(s.z) <= 2.0f * HDRP_CULL_MARGIN * s.light_size ? 1.0f : 0.0f;
@@ -786,12 +797,15 @@ HDRP_FN hdrp_cull_shadow hdrp_cull_shadow_make(hdrp_cull_blocker blocker, hdrp_v
     }
     depths.farthest = hdrp_clamp(depths.farthest, 0.0f, HDRP_CULL_FAR_INFINITE) *
                       (1.0f + 4.0f * HDRP_CULL_MARGIN);
-    r = hdrp_i_cull_blocker_cast(s, tile, depths, orthographic);
-    if (uncertain > 0.0f) {
-        hdrp_cull_shadow other =
-            hdrp_i_cull_blocker_cast(hdrp_i_cull_blocker_turned(s), tile, depths, orthographic);
-        r.reached = hdrp_i_cull_blocker_join(r.reached, other.reached);
-        r.covered = hdrp_i_cull_blocker_nowhere();
+    r.reached = hdrp_i_cull_blocker_nowhere();
+    r.covered = r.reached;
+    for (i = 0u; i < 2u; ++i) { /* one text for both sides, for it is long */
+        if (i == 0u || uncertain > 0.0f) {
+            hdrp_cull_shadow one = hdrp_i_cull_blocker_cast(s, tile, depths, orthographic);
+            r.reached = hdrp_i_cull_blocker_join(r.reached, one.reached);
+            r.covered = uncertain > 0.0f ? r.covered : one.covered;
+            s = hdrp_i_cull_blocker_turned(s);
+        }
     }
     if (!(size <= HDRP_CULL_DISTANCE_MAX)) {
         r.reached = hdrp_i_cull_blocker_interval(-HDRP_I_CULL_BLOCKER_FAR, HDRP_I_CULL_BLOCKER_FAR);

@@ -1216,6 +1216,20 @@ HDRP_FN float hdrp_i_cull_cone_reach(hdrp_v2 cone, float cosine, float sine)
     return cosine >= cone.x ? 1.0f : hdrp_max(rim, 0.0f);
 }
 
+/* Depths between which a cone with a cap is. */
+HDRP_FN hdrp_v2 hdrp_i_cull_cone_depths(hdrp_cull_shape s, hdrp_v2 cone)
+{
+    hdrp_v3 ahead = hdrp_v3_make(0.0f, 0.0f, 1.0f);
+    float cosine = s.forward_half.z;
+    float sine = hdrp_i_cull_sine(hdrp_v3_from_v4(s.forward_half), ahead);
+    float range = s.center_range.w;
+    float margin =
+        hdrp_i_cull_margin(hdrp_v3_from_v4(s.center_range)) + 4.0f * HDRP_CULL_MARGIN * range;
+    return hdrp_v2_make(
+        s.center_range.z - range * hdrp_i_cull_cone_reach(cone, -cosine, sine) - margin,
+        s.center_range.z + range * hdrp_i_cull_cone_reach(cone, cosine, sine) + margin);
+}
+
 /** The part of the picture in which a shape can be seen.
  *  shape      valid      in view space
  *  camera     valid
@@ -1230,30 +1244,30 @@ HDRP_FN hdrp_cull_bounds hdrp_cull_shape_bounds(hdrp_cull_shape shape, hdrp_cull
                                                 float width_px, float height_px)
 {
     hdrp_u32 kind = hdrp_cull_shape_kind(shape);
-    hdrp_cull_bounds r =
-        hdrp_cull_ball_bounds(hdrp_cull_shape_ball(shape), camera, width_px, height_px);
-    float cosine = shape.forward_half.z;
-    float sine =
-        hdrp_i_cull_sine(hdrp_v3_from_v4(shape.forward_half), hdrp_v3_make(0.0f, 0.0f, 1.0f));
-    float z0 = r.nearest;
-    float z1 = r.farthest;
-    hdrp_v2 cone = hdrp_i_cull_cone_of(shape);
-    if ((kind == HDRP_CULL_KIND_CONE && shape.half_angle.x >= 0.0f) ||
-        kind == HDRP_CULL_KIND_PYRAMID) {
-        float range = shape.center_range.w;
-        float margin = hdrp_i_cull_margin(hdrp_v3_from_v4(shape.center_range)) +
-                       4.0f * HDRP_CULL_MARGIN * range;
-        r = hdrp_i_cull_both(r, hdrp_cull_ball_bounds(hdrp_i_cull_cone_ball(shape, cone), camera,
-                                                      width_px, height_px));
-        z0 = shape.center_range.z - range * hdrp_i_cull_cone_reach(cone, -cosine, sine) - margin;
-        z1 = shape.center_range.z + range * hdrp_i_cull_cone_reach(cone, cosine, sine) + margin;
+    hdrp_u32 is_cone = (kind == HDRP_CULL_KIND_CONE && shape.half_angle.x >= 0.0f) ||
+                               kind == HDRP_CULL_KIND_PYRAMID
+                           ? 1u
+                           : 0u;
+    hdrp_v4 ball = hdrp_cull_shape_ball(shape);
+    hdrp_v4 of_cone = ball;
+    hdrp_v2 z = hdrp_v2_make(-HDRP_FLT_MAX, HDRP_FLT_MAX);
+    hdrp_cull_bounds r;
+    /* Bounds come last: then the shape is not needed any more, which saves a GPU registers. */
+    if (is_cone != 0u) {
+        hdrp_v2 cone = hdrp_i_cull_cone_of(shape);
+        z = hdrp_i_cull_cone_depths(shape, cone);
+        of_cone = hdrp_i_cull_cone_ball(shape, cone);
     }
     if (kind >= HDRP_CULL_KIND_BOX) {
-        z1 = hdrp_i_cull_box_touch(shape, hdrp_v3_make(0.0f, 0.0f, 1.0f)).w;
-        z0 = -hdrp_i_cull_box_touch(shape, hdrp_v3_make(0.0f, 0.0f, -1.0f)).w;
+        z.y = hdrp_i_cull_box_touch(shape, hdrp_v3_make(0.0f, 0.0f, 1.0f)).w;
+        z.x = -hdrp_i_cull_box_touch(shape, hdrp_v3_make(0.0f, 0.0f, -1.0f)).w;
     }
-    r.nearest = hdrp_max(z0, r.nearest);
-    r.farthest = hdrp_min(z1, r.farthest);
+    r = hdrp_cull_ball_bounds(ball, camera, width_px, height_px);
+    if (is_cone != 0u) {
+        r = hdrp_i_cull_both(r, hdrp_cull_ball_bounds(of_cone, camera, width_px, height_px));
+    }
+    r.nearest = hdrp_max(z.x, r.nearest);
+    r.farthest = hdrp_min(z.y, r.farthest);
     if (kind == HDRP_CULL_KIND_NONE || r.nearest > r.farthest) {
         r.rect_px = hdrp_v4_make(1.0f, 1.0f, 0.0f, 0.0f);
     }

@@ -23,12 +23,13 @@ uint tile_index;
 uint first_candidate;
 uint candidate_count;
 float scale;
-Window window;
 
 // The slices of a candidate, as hits keep them; false where it misses the tile.
 bool ask(uint candidate, out uint hit)
 {
     uint index = coarse[first_candidate + candidate];
+    uvec2 begin = gl_WorkGroupID.xy * frame.grid.tiles.xy;
+    Window window = window_of(begin, begin + frame.grid.tiles.xy, frame.pixel.z, frame.pixel.w);
     hdrp_cull_interval r = depths_in(window, index, seen_shapes[index], false);
     hit = candidate % BATCH | category_of(seen_shapes[index]) << 10 |
           hdrp_cull_slice(frame.grid, scale, r.nearest) << 12 |
@@ -205,7 +206,6 @@ void main()
     first_candidate = candidates_of(tile);
     candidate_count = coarse[first_candidate - 1u];
     scale = tiles[tile_index].z;
-    window = window_of(begin, begin + frame.grid.tiles.xy, frame.pixel.z, frame.pixel.w);
     uint batches = (candidate_count + BATCH - 1u) / BATCH;
     bool limited = false;
     if (gl_LocalInvocationIndex == 0u) {

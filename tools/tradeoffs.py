@@ -217,6 +217,7 @@ class Data:
         self.cull_file = first_result("cull_cpu_*.csv")
         self.cull = cull_rows(self.cull_file)
         self.oit = rows(ROOT / "tests/oit/recorded.csv")
+        self.oit_pictures = rows(ROOT / "tests/oit/pictures.csv")
         self.oit_steps = rows(ROOT / "tests/oit/steps.csv")
         self.recorded_file = ROOT / "tests/accuracy/recorded.csv"
         self.recorded = {row["id"]: row for row in rows(self.recorded_file)}
@@ -511,7 +512,7 @@ def transparency(data):
     tables = {name: table(heads + titles, oit_lines(data, cases, precision),
                           "lrr" + "r" * len(cases))
               for name, (titles, cases, precision) in OIT_TABLES.items()}
-    return TRANSPARENCY.format(steps=oit_steps_table(data), **tables)
+    return TRANSPARENCY.format(steps=oit_steps_table(data), pictures=oit_pictures(data), **tables)
 
 
 def oit_steps_table(data):
@@ -525,6 +526,30 @@ def oit_steps_table(data):
     heads = [f"{sequence}: {column}" for sequence in sequences
              for column in ("picture", "pixel", "RMSE")]
     return table(["mode", *heads], lines, "l" + "r" * len(heads))
+
+
+def percent(text):
+    """A recorded share for people; less than a thousandth of a percent is rounding."""
+    share = 100.0 * float(text)
+    return f"{share:.2g}" if share >= 1e-3 else "0"
+
+
+def oit_pictures(data):
+    """The error of each mode of the renderer on whole scenes."""
+    found = {(row["mode"], row["scene"], row["resolution"]): row for row in data.oit_pictures}
+    lines = []
+    for mode in dict.fromkeys(row["mode"] for row in data.oit_pictures):
+        some = (found[mode, scene, resolution] for _, scene, resolution in OIT_SCENES)
+        lines.append([f"`--oit {mode}`", *(f"{percent(row['relative_rmse'])} / "
+                                           f"{percent(row['relative_worst'])}" for row in some)])
+    return table(["", *(title for title, _, _ in OIT_SCENES)], lines, "l" + "r" * len(OIT_SCENES))
+
+
+# Heads of columns, scene and resolution of what is soft.
+OIT_SCENES = [("transparency", "transparency", "full"),
+              ("the same, smoke at half resolution", "transparency", "half"),
+              ("AlphaBlendModeTest", "AlphaBlendModeTest", "full"),
+              ("glass-table", "glass-table", "full"), ("love, four times", "love", "full")]
 
 
 # Of each table: heads of columns, cases, and the precision of targets.
@@ -580,6 +605,22 @@ than either way of sorting. `front` jumps where another layer becomes the neares
 `moments` as little as sorting each pixel, which is what they come close to; sorting whole cards jumps
 over the whole picture. Where layers come near the camera and fade, weights that grow fast there
 (`eq7`, `eq8`, `eq10`) take the picture with them.
+
+Whole pictures of [hdrp_render](../examples/render/README.md), 240 x 160, against `--oit sorted`, over
+the pixels that blended surfaces touch: relative RMSE of luminance and, behind the slash, the worst
+pixel, in percent. `transparency` is the built-in scene of smoke, panes, sparks and holograms; of the
+others nothing transmits (`--features=-refraction`), and love stands behind itself:
+
+{pictures}
+- `mcguire` is `eq7`, `volition` is `talk`. Glass that is black and of one opacity, as that of
+  glass-table, needs no order.
+- What covers keeps what it emits in its colour; only what hides nothing goes into the sums of
+  emission. On random layers of which half emit, that is half of the error of the other way.
+- Half the resolution costs about 1 % where sparks and edges are not hidden by smoke, in each mode
+  that is better than that.
+
+![Sorted, recommended, wavelet and volition, from left to right and down](images/oit.png)
+
 """
 
 

@@ -1,5 +1,5 @@
-// The pass of colour: what a surface sends to the viewer, times the exposure, as the picture behind
-// it is.
+// The pass of colour: what a surface sends to the viewer, which is emission where it covers nothing.
+// Light is times the exposure, as in the picture behind it.
 #extension GL_GOOGLE_include_directive : require
 #include "forward.glsl"
 #include "oit.glsl"
@@ -10,6 +10,5 @@ void main()
     uvec2 pixel = uvec2(clamp(oit_place(), vec2(0.0), frame.jitter_size.zw - 1.0));
     hdrp_lit_surface lit = lit_surface_at(s, engine_data(s), pixel);
     vec3 light = (lit.diffuse + lit.specular + emission_nits(s)) * frame.depths_exposure.z;
-    // What is emitted in proportion to alpha is hidden like the rest of the colour.
     hdrp_oit_write(hdrp_oit_fragment_make(light * s.alpha, vec3(0.0), s.coverage, oit_z_view()));
 }
