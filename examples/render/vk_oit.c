@@ -231,10 +231,43 @@ static void write_set(const rd_vk_oit* o, const rd_vk_device* d, uint32_t layer,
 
 /* >>making */
 
+static void free_mode(rd_vk_oit* o, rd_vk_device* d)
+{
+    VkDescriptorSetLayout layout = o->set_layout;
+    for (uint32_t i = 0; i < 2; ++i) {
+        for (uint32_t k = 0; k < HDRP_OIT_TARGETS_MAX; ++k) {
+            rd_vk_image_free(d, &o->layers[i].targets[k]);
+        }
+        for (uint32_t k = 0; k < RD_VK_OIT_PASSES; ++k) {
+            vkDestroyFramebuffer(d->device, o->layers[i].framebuffers[k], NULL);
+        }
+    }
+    for (uint32_t k = 0; k < RD_VK_OIT_PASSES; ++k) {
+        vkDestroyPipeline(d->device, o->pipelines[k], NULL);
+        vkDestroyRenderPass(d->device, o->passes[k], NULL);
+    }
+    vkDestroyPipeline(d->device, o->depth_pipeline, NULL);
+    vkDestroyFramebuffer(d->device, o->depth_framebuffer, NULL);
+    vkDestroyRenderPass(d->device, o->depth_pass, NULL);
+    rd_vk_image_free(d, &o->low_depth);
+    vkDestroyDescriptorPool(d->device, o->pool, NULL);
+    memset(o, 0, sizeof *o);
+    o->set_layout = layout;
+}
+
+void rd_vk_oit_free(rd_vk_oit* o, rd_vk_device* d)
+{
+    free_mode(o, d);
+    vkDestroyDescriptorSetLayout(d->device, o->set_layout, NULL);
+    memset(o, 0, sizeof *o);
+}
+
 bool rd_vk_oit_make(rd_vk_oit* o, rd_vk_device* d, const rd_renderer* r, const rd_vk_raster* raster,
                     const rd_vk_image* nothing)
 {
     bool ok;
+    free_mode(o, d);
+    o->made_for = r->options->oit;
     if (r->options->oit == RD_OIT_SORTED) {
         return true;
     }
@@ -257,29 +290,6 @@ bool rd_vk_oit_make(rd_vk_oit* o, rd_vk_device* d, const rd_renderer* r, const r
     }
     o->present = ok;
     return ok;
-}
-
-void rd_vk_oit_free(rd_vk_oit* o, rd_vk_device* d)
-{
-    for (uint32_t i = 0; i < 2; ++i) {
-        for (uint32_t k = 0; k < HDRP_OIT_TARGETS_MAX; ++k) {
-            rd_vk_image_free(d, &o->layers[i].targets[k]);
-        }
-        for (uint32_t k = 0; k < RD_VK_OIT_PASSES; ++k) {
-            vkDestroyFramebuffer(d->device, o->layers[i].framebuffers[k], NULL);
-        }
-    }
-    for (uint32_t k = 0; k < RD_VK_OIT_PASSES; ++k) {
-        vkDestroyPipeline(d->device, o->pipelines[k], NULL);
-        vkDestroyRenderPass(d->device, o->passes[k], NULL);
-    }
-    vkDestroyPipeline(d->device, o->depth_pipeline, NULL);
-    vkDestroyFramebuffer(d->device, o->depth_framebuffer, NULL);
-    vkDestroyRenderPass(d->device, o->depth_pass, NULL);
-    rd_vk_image_free(d, &o->low_depth);
-    vkDestroyDescriptorPool(d->device, o->pool, NULL);
-    vkDestroyDescriptorSetLayout(d->device, o->set_layout, NULL);
-    memset(o, 0, sizeof *o);
 }
 
 /* >>recording */

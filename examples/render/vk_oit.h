@@ -18,6 +18,7 @@ typedef struct rd_vk_oit_layer {
 
 typedef struct rd_vk_oit {
     bool present; /* with --oit other than sorted */
+    rd_oit made_for;
     hdrp_oit_mode mode;
     uint32_t pass_count, target_count, layer_count;
     hdrp_oit_target targets[HDRP_OIT_TARGETS_MAX];
@@ -31,8 +32,8 @@ typedef struct rd_vk_oit {
 } rd_vk_oit;
 
 bool rd_vk_oit_layout_make(rd_vk_oit* o, rd_vk_device* d);
-/* False, with an error that names what the device lacks for the mode. `nothing` is any image that is
- * to be sampled. */
+/* For the mode of the options, in place of what was made for another one. False, with an error that
+ * names what the device lacks for it. `nothing` is any image that is to be sampled. */
 bool rd_vk_oit_make(rd_vk_oit* o, rd_vk_device* d, const rd_renderer* r, const rd_vk_raster* raster,
                     const rd_vk_image* nothing);
 void rd_vk_oit_free(rd_vk_oit* o, rd_vk_device* d);
