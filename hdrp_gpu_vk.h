@@ -26,7 +26,9 @@
  *     hdrp_gpu_vk_write_lighting(&gpu, commands, &lighting);          names all of these
  *     hdrp_gpu_vk_classify(&gpu, commands, &lighting, &variants, &tiles);
  *     hdrp_gpu_vk_light_deferred(&gpu, commands, &lighting, &variants, &tiles, &lit);
- *     ... the caller draws forward and transparent surfaces: shaders/light_loop.glsl
+ *     ... the caller draws forward surfaces: shaders/light_loop.glsl
+ *     ... and transparent ones, into targets of their own: shaders/oit_output.glsl
+ *     hdrp_gpu_vk_oit_composite(&gpu, commands, &oit);
  *     hdrp_gpu_vk_tone_map_record(&gpu, commands, &map);
  *
  * all outside of render passes. hdrp_gpu_vk_fgd_bake is for once, hdrp_gpu_vk_env_bake for when the
@@ -34,11 +36,11 @@
  * examples/vk_minimal.c lights a picture. Nothing is submitted and nothing is waited for.
  *
  * A pass does what a function does on the CPU: hdrp_cull_build, hdrp_shadow_cascades_visibility,
- * hdrp_cull_assign_variants, hdrp_brdf_lit_eval. Each says in which layouts it takes and leaves
- * images. What it writes may have been read or written by compute and fragment shaders and by
- * copies in earlier commands of the same queue, and may be read by them in later ones: the barriers
- * for that are recorded. What it reads is for the caller to make visible to the compute stage, and
- * so is what comes from another queue or goes there.
+ * hdrp_cull_assign_variants, hdrp_brdf_lit_eval, hdrp_oit_composite_rows. Each says in which
+ * layouts it takes and leaves images. What it writes may have been read or written by compute and
+ * fragment shaders and by copies in earlier commands of the same queue, and may be read by them in
+ * later ones: the barriers for that are recorded. What it reads is for the caller to make visible
+ * to the compute stage, and so is what comes from another queue or goes there.
  *
  * Memory: images, and buffers of shapes, lights and views, are the caller's; passes hold them until
  * they have been executed, and structs until the call returns. What ..._create makes (lists, tiles,
@@ -73,6 +75,7 @@
 #include "hdrp_gpu_vk_cull.h"
 #include "hdrp_gpu_vk_env.h"
 #include "hdrp_gpu_vk_light.h"
+#include "hdrp_gpu_vk_oit.h"
 #include "hdrp_gpu_vk_shadow.h"
 
 #if HDRP_VERSION != 100
@@ -133,6 +136,7 @@ HDRP_API hdrp_result hdrp_gpu_vk_begin_frame(hdrp_gpu_vk* gpu, uint32_t frame);
 #include "hdrp_gpu_vk_cull.h"
 #include "hdrp_gpu_vk_env.h"
 #include "hdrp_gpu_vk_light.h"
+#include "hdrp_gpu_vk_oit.h"
 #include "hdrp_gpu_vk_shadow.h"
 
 #ifdef __cplusplus
@@ -144,13 +148,13 @@ extern "C" {
 /* The shaders of a header. */
 typedef hdrp_i_gpu_vk_shader (*hdrp_i_gpu_vk_shader_of)(uint32_t);
 
-#define HDRP_I_GPU_VK_TOPICS 4u
+#define HDRP_I_GPU_VK_TOPICS 5u
 
 static hdrp_i_gpu_vk_shader_of hdrp_i_gpu_vk_topic(uint32_t topic)
 {
     static const hdrp_i_gpu_vk_shader_of topics[HDRP_I_GPU_VK_TOPICS] = {
         hdrp_i_gpu_vk_cull_shader, hdrp_i_gpu_vk_env_shader, hdrp_i_gpu_vk_light_shader,
-        hdrp_i_gpu_vk_shadow_shader};
+        hdrp_i_gpu_vk_oit_shader, hdrp_i_gpu_vk_shadow_shader};
     return topics[topic];
 }
 
@@ -264,8 +268,9 @@ static void hdrp_i_gpu_vk_check(hdrp_gpu_vk_functions* vk, const hdrp_gpu_vk_des
     hdrp_i_gpu_vk_need(missing, (hdrp_i_gpu_vk_queue_flags(vk, desc) & VK_QUEUE_COMPUTE_BIT) != 0u,
                        "VK_QUEUE_COMPUTE_BIT in the queue family");
     hdrp_i_gpu_vk_check_limits(missing, &properties.limits, passes);
-    if (passes & (HDRP_GPU_VK_PASS_FGD | HDRP_GPU_VK_PASS_LIGHT | HDRP_GPU_VK_PASS_SHADOW |
-                  HDRP_GPU_VK_PASS_ENVIRONMENT | HDRP_GPU_VK_PASS_TONE_MAP)) {
+    if (passes &
+        (HDRP_GPU_VK_PASS_FGD | HDRP_GPU_VK_PASS_LIGHT | HDRP_GPU_VK_PASS_SHADOW |
+         HDRP_GPU_VK_PASS_ENVIRONMENT | HDRP_GPU_VK_PASS_TONE_MAP | HDRP_GPU_VK_PASS_OIT)) {
         hdrp_i_gpu_vk_need(missing,
                            desc->features && desc->features->shaderStorageImageWriteWithoutFormat,
                            "shaderStorageImageWriteWithoutFormat");
@@ -349,22 +354,25 @@ static void hdrp_i_gpu_vk_choose_group(hdrp_gpu_vk* gpu, uint32_t version)
 /* The shaders of the passes that are asked for, of one of the headers. */
 static VkResult hdrp_i_gpu_vk_make_shaders(hdrp_gpu_vk* gpu, hdrp_i_gpu_vk_shader_of shader_of)
 {
-    const VkSpecializationMapEntry entries[2] = {
-        {0u, (uint32_t)offsetof(hdrp_gpu_vk, group), sizeof gpu->group},
-        {1u, (uint32_t)offsetof(hdrp_gpu_vk, one_subgroup), sizeof gpu->one_subgroup}};
-    VkSpecializationInfo constants; /* of shaders/group.glsl; others have none by these numbers */
+    static const VkSpecializationMapEntry entries[3] = {
+        {0u, 0u, sizeof(uint32_t)}, {1u, 4u, sizeof(uint32_t)}, {2u, 8u, sizeof(uint32_t)}};
+    uint32_t values[3]; /* of shaders/group.glsl, and the kind; others have none by these numbers */
+    VkSpecializationInfo constants;
     VkResult r = VK_SUCCESS;
     uint32_t i;
-    constants.mapEntryCount = 2u;
+    values[0] = gpu->group;
+    values[1] = gpu->one_subgroup;
+    constants.mapEntryCount = 3u;
     constants.pMapEntries = entries;
-    constants.dataSize = sizeof *gpu;
-    constants.pData = gpu;
+    constants.dataSize = sizeof values;
+    constants.pData = values;
     for (i = 0u; shader_of(i).name && r == VK_SUCCESS; ++i) {
         hdrp_i_gpu_vk_shader shader = shader_of(i);
         hdrp_gpu_vk_pipeline* made = &gpu->pipelines[shader.index];
         if ((gpu->desc.passes & shader.pass) == 0u) {
             continue;
         }
+        values[2] = shader.kind;
         r = hdrp_i_gpu_vk_layouts(gpu, &shader, made);
         if (r == VK_SUCCESS && shader.has_variants == 0u) {
             r = hdrp_i_gpu_vk_specialise(gpu, &shader, made->layout, &constants, &made->pipeline);

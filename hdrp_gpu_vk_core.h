@@ -35,7 +35,8 @@ extern "C" {
 #define HDRP_GPU_VK_PASS_SHADOW      64u
 #define HDRP_GPU_VK_PASS_ENVIRONMENT 128u
 #define HDRP_GPU_VK_PASS_TONE_MAP    256u
-#define HDRP_GPU_VK_PASS_ALL         495u
+#define HDRP_GPU_VK_PASS_OIT         512u
+#define HDRP_GPU_VK_PASS_ALL         1007u
 
 /* Room for the compute shaders of all passes. */
 #define HDRP_GPU_VK_SHADERS_MAX 32u
@@ -286,6 +287,7 @@ extern "C" {
 #define HDRP_I_GPU_VK_CULL_PIXELS      5u
 #define HDRP_I_GPU_VK_CULL_CLUSTERS    6u
 #define HDRP_I_GPU_VK_CULL_BLOCKERS    7u
+#define HDRP_I_GPU_VK_OIT_COMPOSITE    8u /* to 11u: a kind each */
 #define HDRP_I_GPU_VK_CLASSIFY         16u
 #define HDRP_I_GPU_VK_DISPATCH         17u
 #define HDRP_I_GPU_VK_DEFERRED         18u
@@ -308,6 +310,7 @@ typedef struct hdrp_i_gpu_vk_shader {
     const char* bindings;
     uint32_t push_bytes;
     uint32_t has_variants; /* 1: its pipelines are made later, specialised */
+    uint32_t kind;         /* constant 2, of shaders that several passes share */
 } hdrp_i_gpu_vk_shader;
 
 HDRP_I_GPU_VK_FN hdrp_i_gpu_vk_shader hdrp_i_gpu_vk_shader_make(uint32_t index, uint32_t pass,
@@ -563,6 +566,21 @@ HDRP_I_GPU_VK_FN int hdrp_i_gpu_vk_has_format(const hdrp_gpu_vk* gpu, VkFormat f
     }
     gpu->vk.GetPhysicalDeviceFormatProperties(gpu->desc.physical_device, format, &properties);
     return (properties.optimalTilingFeatures & needs) == needs;
+}
+
+/* Largest value of a format of cubes; 0 for formats that are none. */
+HDRP_I_GPU_VK_FN float hdrp_i_gpu_vk_largest(VkFormat format)
+{
+    switch (format) {
+    case VK_FORMAT_R16G16B16A16_SFLOAT:
+        return 65504.0f;
+    case VK_FORMAT_B10G11R11_UFLOAT_PACK32:
+        return 64512.0f; /* of its ten bits; those of eleven reach 65024 */
+    case VK_FORMAT_R32G32B32A32_SFLOAT:
+        return HDRP_FLT_MAX;
+    default:
+        return 0.0f;
+    }
 }
 
 /* The memory of an image. */
@@ -854,6 +872,9 @@ HDRP_I_GPU_VK_FN void hdrp_i_gpu_vk_order_level(const hdrp_gpu_vk* gpu, VkComman
                               : VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT;
     VkMemoryBarrier all;
     VkImageMemoryBarrier one;
+    if (before && layout != VK_IMAGE_LAYOUT_UNDEFINED) { /* what is there may be read as well */
+        to |= VK_ACCESS_SHADER_READ_BIT;
+    }
     memset(&all, 0, sizeof all);
     all.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
     all.srcAccessMask = from;

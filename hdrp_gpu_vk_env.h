@@ -281,21 +281,6 @@ typedef struct hdrp_i_gpu_vk_push_env_filter {
     hdrp_v4 lobe;
 } hdrp_i_gpu_vk_push_env_filter;
 
-/* Largest value of a format of cubes; 0 for formats that are none. */
-HDRP_I_GPU_VK_FN float hdrp_i_gpu_vk_env_largest(VkFormat format)
-{
-    switch (format) {
-    case VK_FORMAT_R16G16B16A16_SFLOAT:
-        return 65504.0f;
-    case VK_FORMAT_B10G11R11_UFLOAT_PACK32:
-        return 64512.0f; /* of its ten bits; those of eleven reach 65024 */
-    case VK_FORMAT_R32G32B32A32_SFLOAT:
-        return HDRP_FLT_MAX;
-    default:
-        return 0.0f;
-    }
-}
-
 HDRP_I_GPU_VK_FN uint32_t hdrp_i_gpu_vk_env_levels(uint32_t size)
 {
     uint32_t levels = 1u;
@@ -408,7 +393,7 @@ HDRP_API hdrp_result hdrp_gpu_vk_env_create(const hdrp_gpu_vk* gpu, const hdrp_e
         hdrp_i_gpu_vk_env_node_bytes(&made.desc) > gpu->buffer_range_max) {
         return HDRP_ERROR_TOO_LARGE;
     }
-    if (hdrp_i_gpu_vk_env_largest(format) == 0.0f) {
+    if (hdrp_i_gpu_vk_largest(format) == 0.0f) {
         return HDRP_ERROR_UNSUPPORTED;
     }
     r = hdrp_i_gpu_vk_env_make(gpu, format, &made);
@@ -573,8 +558,7 @@ HDRP_I_GPU_VK_FN hdrp_result hdrp_i_gpu_vk_env_filter(hdrp_gpu_vk* gpu, VkComman
     push.cubes = hdrp_u32x4_make(env->desc.radiance_size,
                                  hdrp_i_gpu_vk_env_levels(env->desc.radiance_size), n, 0u);
     push.faces = hdrp_u32x4_make(first_face, groups, alpha > 0.0f ? 0u : 1u, 0u);
-    push.lobe =
-        hdrp_v4_make(alpha, env->desc.opening, factor, hdrp_i_gpu_vk_env_largest(cube->format));
+    push.lobe = hdrp_v4_make(alpha, env->desc.opening, factor, hdrp_i_gpu_vk_largest(cube->format));
     hdrp_i_gpu_vk_order_level(gpu, commands, 1, cube->image, level, 6u,
                               first_face == 0u ? VK_IMAGE_LAYOUT_UNDEFINED
                                                : VK_IMAGE_LAYOUT_GENERAL);

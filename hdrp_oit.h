@@ -20,11 +20,12 @@
  *     t = hdrp_oit_layer_export(f, through, scale);                      pass 2
  *     color = hdrp_oit_layer_composite(t_of_the_pixel, opaque_color, scale);
  *
- * Emission is what a surface adds whatever its alpha: fire, sparks, holograms, glow. It goes into
- * sums of its own, so that pixels where nothing covers anything are exact in every mode but that of
- * the talk. Colours are as they will be shown, exposed; scale is a power of 2 that brings them near
- * 1 where they are not, and products with weights stay below 65504 / 32 whatever they are: 32
- * fragments never overflow a half float.
+ * Emission is what a surface adds whatever its alpha: fire, sparks, glow. It goes into sums of its
+ * own, so that pixels where nothing covers anything are exact in every mode but that of the talk.
+ * What shines in proportion to its alpha is better off as a part of its colour. Colours are as they
+ * will be shown, exposed; scale is a power of 2 that brings them near 1 where they are not, and
+ * products with weights stay below 65504 / 32 whatever they are: 32 fragments never overflow a half
+ * float.
  *
  * Which mode: tests/oit/recorded.csv holds the error of each against sorting, docs/tradeoffs.md
  * shows them. A fragment that is not there (alpha 0, no emission) has no influence on any.
@@ -40,6 +41,7 @@
  *   published weights: weight_eq7 weight_eq8 weight_eq9 weight_eq10 weight_2015
  *   recommended: weight weighted_export export composite merge
  *   talk: talk_settings_make talk_weight talk_export talk_composite talk_merge
+ *   modes: mode_weight
  *   places: range_export place_of layer_export layer_composite
  *   front: front_export front_composite
  *   wavelet: wavelet_insert wavelet_transmittance
@@ -447,6 +449,53 @@ HDRP_FN hdrp_oit_targets hdrp_oit_talk_merge(hdrp_oit_targets a, hdrp_oit_target
     hdrp_oit_targets t = hdrp_oit_merge(a, b);
     t.light = hdrp_v4_make(a.light.x * b.light.x, 0.0f, 0.0f, a.light.w + b.light.w);
     return t;
+}
+
+/* >>modes */
+
+#define HDRP_OIT_MODE_RECOMMENDED 0 /* one pass: hdrp_oit_export */
+#define HDRP_OIT_MODE_FRONT       1 /* two passes, the first writes depth: hdrp_oit_front_export */
+#define HDRP_OIT_MODE_WAVELET     2 /* three passes: the best */
+#define HDRP_OIT_MODE_MOMENTS_6   3 /* three passes */
+#define HDRP_OIT_MODE_MOMENTS_4   4 /* three passes */
+#define HDRP_OIT_MODE_EQ7         5 /* one pass with published weights, emission apart */
+#define HDRP_OIT_MODE_EQ8         6
+#define HDRP_OIT_MODE_EQ9         7
+#define HDRP_OIT_MODE_EQ10        8
+#define HDRP_OIT_MODE_2015        9
+#define HDRP_OIT_MODE_TALK_WEIGHT 10 /* that of the talk, divided as in eq. 6, emission apart */
+#define HDRP_OIT_MODE_TALK        11 /* as shown */
+#define HDRP_OIT_MODE_COUNT       12
+
+/** The weight of a mode, for hdrp_oit_weighted_export.
+ *  mode          any    HDRP_OIT_MODE_...
+ *  f             valid
+ *  device_depth  any    0 at the near plane, 1 at the far one: read by eq. 10 and 2015 alone
+ *  s             valid  read by HDRP_OIT_MODE_TALK_WEIGHT alone
+ *  returns       [0,3000]
+ *  edges         a mode that has no weight of its own, or does not exist, takes the recommended one
+ *  error         none: a selection
+ *  source        a definition */
+HDRP_FN float hdrp_oit_mode_weight(hdrp_u32 mode, hdrp_oit_fragment f, float device_depth,
+                                   hdrp_oit_talk_settings s)
+{
+    float w;
+    if (mode == HDRP_OIT_MODE_EQ7) {
+        w = hdrp_oit_weight_eq7(f.z_view, f.alpha);
+    } else if (mode == HDRP_OIT_MODE_EQ8) {
+        w = hdrp_oit_weight_eq8(f.z_view, f.alpha);
+    } else if (mode == HDRP_OIT_MODE_EQ9) {
+        w = hdrp_oit_weight_eq9(f.z_view, f.alpha);
+    } else if (mode == HDRP_OIT_MODE_EQ10) {
+        w = hdrp_oit_weight_eq10(device_depth, f.alpha);
+    } else if (mode == HDRP_OIT_MODE_2015) {
+        w = hdrp_oit_weight_2015(device_depth, f.alpha);
+    } else if (mode == HDRP_OIT_MODE_TALK_WEIGHT) {
+        w = hdrp_oit_talk_weight(f, s);
+    } else {
+        w = hdrp_oit_weight(f.z_view, f.alpha);
+    }
+    return w;
 }
 
 /* >>places
@@ -878,21 +927,7 @@ HDRP_FN float hdrp_oit_moments_transmittance(hdrp_oit_moments m, hdrp_oit_fragme
 extern "C" {
 #endif
 
-typedef enum hdrp_oit_mode {
-    HDRP_OIT_MODE_RECOMMENDED = 0, /* one pass: hdrp_oit_export */
-    HDRP_OIT_MODE_FRONT,           /* two passes, the first writes depth: hdrp_oit_front_export */
-    HDRP_OIT_MODE_WAVELET,         /* three passes: the best */
-    HDRP_OIT_MODE_MOMENTS_6,       /* three passes */
-    HDRP_OIT_MODE_MOMENTS_4,       /* three passes */
-    HDRP_OIT_MODE_EQ7,             /* one pass with published weights, emission apart */
-    HDRP_OIT_MODE_EQ8,
-    HDRP_OIT_MODE_EQ9,
-    HDRP_OIT_MODE_EQ10,
-    HDRP_OIT_MODE_2015,
-    HDRP_OIT_MODE_TALK_WEIGHT, /* that of the talk, divided as in eq. 6, emission apart */
-    HDRP_OIT_MODE_TALK,        /* as shown */
-    HDRP_OIT_MODE_COUNT
-} hdrp_oit_mode;
+typedef uint32_t hdrp_oit_mode; /* HDRP_OIT_MODE_... */
 
 typedef enum hdrp_oit_format {
     HDRP_OIT_FORMAT_RGBA32F = 0,
@@ -1014,16 +1049,17 @@ HDRP_API void hdrp_oit_blend_rows(hdrp_oit_image* image, uint32_t pass,
                                   const hdrp_oit_fragment* fragments, const uint32_t* pixels,
                                   size_t count, uint32_t row_begin, uint32_t row_end);
 
-/** Adds the sums of an image of lower resolution.
+/** Adds the sums of an image of lower resolution: all targets of the last pass.
  *  image      of the full resolution
  *  low        of the same mode; any size; sampled bilinearly, clamped at its edges
  *  row_begin  any  first row of image
  *  row_end    any  after the last row; limited to the height
  *  returns    HDRP_OK, or an error, with image untouched
- *  errors     HDRP_ERROR_NULL_POINTER, HDRP_ERROR_BAD_ARGUMENT for another mode or precision, and
- *             for a mode of several passes: what is nearest and what absorbs is known for one
- *             resolution only
+ *  errors     HDRP_ERROR_NULL_POINTER, HDRP_ERROR_BAD_ARGUMENT for another mode or precision
  *  range      rows: disjoint ranges may be added at the same time
+ *  note       in modes of several passes both images need all fragments in every pass but the last:
+ *             what is nearest and what absorbs hides those of the other resolution too. In the last
+ *             pass each gets its own
  *  note       targets are not rounded again: a composite shader adds in registers */
 HDRP_API hdrp_result hdrp_oit_merge_rows(hdrp_oit_image* image, const hdrp_oit_image* low,
                                          uint32_t row_begin, uint32_t row_end);
@@ -1063,8 +1099,7 @@ static int hdrp_i_oit_is_layered(hdrp_oit_mode mode)
 
 static int hdrp_i_oit_exists(hdrp_oit_mode mode, hdrp_oit_precision precision)
 {
-    return (uint32_t)mode < (uint32_t)HDRP_OIT_MODE_COUNT &&
-           (uint32_t)precision <= (uint32_t)HDRP_OIT_PRECISION_FLOAT;
+    return mode < HDRP_OIT_MODE_COUNT && (uint32_t)precision <= (uint32_t)HDRP_OIT_PRECISION_FLOAT;
 }
 
 static hdrp_oit_target hdrp_i_oit_target(hdrp_oit_format format, hdrp_oit_blend color,
@@ -1306,22 +1341,8 @@ static uint32_t hdrp_i_oit_first_color(const hdrp_oit_image* image)
 static float hdrp_i_oit_mode_weight(const hdrp_oit_desc* d, hdrp_oit_fragment f)
 {
     float depth = d->far_m / (d->far_m - d->near_m) * (1.0f - d->near_m / f.z_view);
-    switch (d->mode) {
-    case HDRP_OIT_MODE_EQ7:
-        return hdrp_oit_weight_eq7(f.z_view, f.alpha);
-    case HDRP_OIT_MODE_EQ8:
-        return hdrp_oit_weight_eq8(f.z_view, f.alpha);
-    case HDRP_OIT_MODE_EQ9:
-        return hdrp_oit_weight_eq9(f.z_view, f.alpha);
-    case HDRP_OIT_MODE_EQ10:
-        return hdrp_oit_weight_eq10(depth, f.alpha);
-    case HDRP_OIT_MODE_2015:
-        return hdrp_oit_weight_2015(depth, f.alpha);
-    case HDRP_OIT_MODE_TALK_WEIGHT:
-        return hdrp_oit_talk_weight(f, hdrp_oit_talk_settings_make(d->feather, d->exposure));
-    default:
-        return hdrp_oit_weight(f.z_view, f.alpha);
-    }
+    return hdrp_oit_mode_weight(d->mode, f, depth,
+                                hdrp_oit_talk_settings_make(d->feather, d->exposure));
 }
 
 static hdrp_oit_place hdrp_i_oit_image_place(const hdrp_oit_image* image, hdrp_oit_fragment f,
@@ -1455,61 +1476,108 @@ static hdrp_oit_targets hdrp_i_oit_sums(const hdrp_oit_image* image, size_t pixe
     return t;
 }
 
-static hdrp_v4 hdrp_i_oit_lerp4(hdrp_v4 a, hdrp_v4 b, float t)
-{
-    return hdrp_v4_make(hdrp_lerp(a.x, b.x, t), hdrp_lerp(a.y, b.y, t), hdrp_lerp(a.z, b.z, t),
-                        hdrp_lerp(a.w, b.w, t));
-}
+/* Four pixels and what lies between them. */
+typedef struct hdrp_i_oit_tap {
+    size_t pixel[4];
+    float x, y;
+} hdrp_i_oit_tap;
 
-/* The sums of an image between four pixels; x and y in pixels, 0.5 at the centre of the first. */
-static hdrp_oit_targets hdrp_i_oit_sampled(const hdrp_oit_image* image, float x, float y)
+/* x and y in pixels, 0.5 at the centre of the first. */
+static hdrp_i_oit_tap hdrp_i_oit_tap_at(const hdrp_oit_image* image, float x, float y)
 {
     float last_x = (float)(image->desc.width_px - 1u), last_y = (float)(image->desc.height_px - 1u);
     float px = hdrp_clamp(x - 0.5f, 0.0f, last_x), py = hdrp_clamp(y - 0.5f, 0.0f, last_y);
     float column = hdrp_floor(px), row = hdrp_floor(py);
     size_t width = image->desc.width_px;
     size_t step_x = column < last_x ? 1u : 0u, step_y = row < last_y ? width : 0u;
-    size_t at = (size_t)row * width + (size_t)column;
-    hdrp_oit_targets a = hdrp_i_oit_sums(image, at), b = hdrp_i_oit_sums(image, at + step_x);
-    hdrp_oit_targets c = hdrp_i_oit_sums(image, at + step_y);
-    hdrp_oit_targets d = hdrp_i_oit_sums(image, at + step_y + step_x);
-    a.accum = hdrp_i_oit_lerp4(hdrp_i_oit_lerp4(a.accum, b.accum, px - column),
-                               hdrp_i_oit_lerp4(c.accum, d.accum, px - column), py - row);
-    a.light = hdrp_i_oit_lerp4(hdrp_i_oit_lerp4(a.light, b.light, px - column),
-                               hdrp_i_oit_lerp4(c.light, d.light, px - column), py - row);
-    return a;
+    hdrp_i_oit_tap tap;
+    tap.pixel[0] = (size_t)row * width + (size_t)column;
+    tap.pixel[1] = tap.pixel[0] + step_x;
+    tap.pixel[2] = tap.pixel[0] + step_y;
+    tap.pixel[3] = tap.pixel[2] + step_x;
+    tap.x = px - column;
+    tap.y = py - row;
+    return tap;
+}
+
+static hdrp_v4 hdrp_i_oit_lerp4(hdrp_v4 a, hdrp_v4 b, float t)
+{
+    return hdrp_v4_make(hdrp_lerp(a.x, b.x, t), hdrp_lerp(a.y, b.y, t), hdrp_lerp(a.z, b.z, t),
+                        hdrp_lerp(a.w, b.w, t));
+}
+
+static hdrp_v4 hdrp_i_oit_mixed(const hdrp_v4* v, const hdrp_i_oit_tap* tap)
+{
+    return hdrp_i_oit_lerp4(hdrp_i_oit_lerp4(v[0], v[1], tap->x),
+                            hdrp_i_oit_lerp4(v[2], v[3], tap->x), tap->y);
+}
+
+/* The sums of an image between four pixels. */
+static hdrp_oit_targets hdrp_i_oit_sampled(const hdrp_oit_image* image, const hdrp_i_oit_tap* tap)
+{
+    hdrp_v4 accum[4], light[4];
+    hdrp_oit_targets t;
+    int i;
+    for (i = 0; i < 4; ++i) {
+        t = hdrp_i_oit_sums(image, tap->pixel[i]);
+        accum[i] = t.accum;
+        light[i] = t.light;
+    }
+    t.accum = hdrp_i_oit_mixed(accum, tap);
+    t.light = hdrp_i_oit_mixed(light, tap);
+    return t;
+}
+
+/* The nearest fragments of both: each image has those whose surface is its own. */
+static void hdrp_i_oit_merge_front(hdrp_oit_image* image, const hdrp_oit_image* low, size_t pixel,
+                                   const hdrp_i_oit_tap* tap)
+{
+    uint32_t plane = hdrp_i_oit_first_color(image) - 1u;
+    hdrp_v4* to = hdrp_i_oit_texel(image, plane, pixel);
+    hdrp_v4 v[4], added;
+    int i;
+    for (i = 0; i < 4; ++i) {
+        v[i] = *hdrp_i_oit_texel(low, plane, tap->pixel[i]);
+    }
+    added = hdrp_i_oit_mixed(v, tap);
+    *to = hdrp_v4_make(to->x + added.x, to->y + added.y, to->z + added.z, to->w + added.w);
+}
+
+static void hdrp_i_oit_merge_pixel(hdrp_oit_image* image, const hdrp_oit_image* low, size_t pixel,
+                                   const hdrp_i_oit_tap* tap)
+{
+    uint32_t first = hdrp_i_oit_first_color(image);
+    hdrp_oit_targets a = hdrp_i_oit_sums(image, pixel), b = hdrp_i_oit_sampled(low, tap);
+    a = image->desc.mode == HDRP_OIT_MODE_TALK ? hdrp_oit_talk_merge(a, b) : hdrp_oit_merge(a, b);
+    *hdrp_i_oit_texel(image, first, pixel) = a.accum;
+    *hdrp_i_oit_texel(image, first + 1u, pixel) = a.light;
+    if (first + 2u < image->target_count) {
+        *hdrp_i_oit_texel(image, first + 2u, pixel) = hdrp_v4_make(a.light.w, 0.0f, 0.0f, 0.0f);
+    }
+    if (image->desc.mode == HDRP_OIT_MODE_FRONT) {
+        hdrp_i_oit_merge_front(image, low, pixel, tap);
+    }
 }
 
 HDRP_API hdrp_result hdrp_oit_merge_rows(hdrp_oit_image* image, const hdrp_oit_image* low,
                                          uint32_t row_begin, uint32_t row_end)
 {
-    uint32_t x, y, end, first;
+    uint32_t x, y, end;
     float scale_x, scale_y;
     if (!image || !low) {
         return HDRP_ERROR_NULL_POINTER;
     }
-    if (image->desc.mode != low->desc.mode || image->desc.precision != low->desc.precision ||
-        hdrp_oit_pass_count(image->desc.mode) > 1u) {
+    if (image->desc.mode != low->desc.mode || image->desc.precision != low->desc.precision) {
         return HDRP_ERROR_BAD_ARGUMENT;
     }
-    first = hdrp_i_oit_first_color(image);
     end = row_end < image->desc.height_px ? row_end : image->desc.height_px;
     scale_x = (float)low->desc.width_px / (float)image->desc.width_px;
     scale_y = (float)low->desc.height_px / (float)image->desc.height_px;
     for (y = row_begin; y < end; ++y) {
         for (x = 0u; x < image->desc.width_px; ++x) {
-            size_t pixel = (size_t)y * image->desc.width_px + x;
-            hdrp_oit_targets a = hdrp_i_oit_sums(image, pixel);
-            hdrp_oit_targets b =
-                hdrp_i_oit_sampled(low, ((float)x + 0.5f) * scale_x, ((float)y + 0.5f) * scale_y);
-            a = image->desc.mode == HDRP_OIT_MODE_TALK ? hdrp_oit_talk_merge(a, b)
-                                                       : hdrp_oit_merge(a, b);
-            *hdrp_i_oit_texel(image, first, pixel) = a.accum;
-            *hdrp_i_oit_texel(image, first + 1u, pixel) = a.light;
-            if (first + 2u < image->target_count) {
-                *hdrp_i_oit_texel(image, first + 2u, pixel) =
-                    hdrp_v4_make(a.light.w, 0.0f, 0.0f, 0.0f);
-            }
+            hdrp_i_oit_tap tap =
+                hdrp_i_oit_tap_at(low, ((float)x + 0.5f) * scale_x, ((float)y + 0.5f) * scale_y);
+            hdrp_i_oit_merge_pixel(image, low, (size_t)y * image->desc.width_px + x, &tap);
         }
     }
     return HDRP_OK;

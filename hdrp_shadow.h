@@ -392,7 +392,9 @@ HDRP_FN float hdrp_i_shadow_snap(float x, float step)
  *            HDRP_SHADOW_MARGIN
  *  source    Valient 2008, "Stable Rendering of Cascaded Shadow Maps", in ShaderX6: a ball, and
  *            steps of whole texels
- *  note      draw with depth clamped and not clipped: what is in front of the near plane casts too.
+ *  note      the ball fills the map but for hdrp_shadow_border_px on each side and one texel, half
+ *            of which the map may be off to either side;
+ *            draw with depth clamped and not clipped: what is in front of the near plane casts too.
  *            Where positions are relative to a camera that moves, so is the grid of texels, and
  *            shadows shimmer: give such positions an origin that stays */
 HDRP_FN hdrp_shadow_view hdrp_shadow_view_ball(hdrp_v4 ball, hdrp_v3 forward, float caster_m,
@@ -696,7 +698,8 @@ HDRP_FN hdrp_shadow_receiver hdrp_shadow_receiver_make(hdrp_shadow_view view, hd
  *  texel     [-1e5,1e5]  x, y of its centre
  *  depth     any         device depth that it holds
  *  returns   [0,1]       1: lit
- *  edges     NaN shadows nothing
+ *  edges     NaN shadows nothing, and neither does what is nearer to the light by at most 1.5
+ *            settings.depth_step, or 2^-20 where that is more
  *  error     none: a comparison
  *  source    Williams 1978, "Casting Curved Shadows on Curved Surfaces" */
 HDRP_FN float hdrp_shadow_lit(hdrp_shadow_view view, hdrp_shadow_receiver receiver, hdrp_v2 texel,
@@ -761,7 +764,7 @@ HDRP_API float hdrp_shadow_cascades_visibility(const hdrp_shadow_atlas* atlas,
 /* What cascades are made for. */
 typedef struct hdrp_shadow_cascades {
     hdrp_v3 eye;          /* m, of the camera, in the frame in which positions are looked up */
-    hdrp_v3 view_forward; /* any length */
+    hdrp_v3 view_forward; /* any length; without a direction it is -Z */
     hdrp_v2 extent;       /* x, y tangents of the farthest edges of the picture; orthographic: m */
     uint32_t orthographic;
     float near_m, far_m; /* at far_m shadows end, however far the camera sees */

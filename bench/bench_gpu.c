@@ -11,13 +11,10 @@
 #define HDRP_GPU_VK_IMPLEMENTATION
 #include "hdrp_gpu_vk.h"
 
+#include "bench_vk.h"
 #include "cull_scene.h"
 
-#include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <vulkan/vulkan.h>
 
 #define ROUNDS_MAX 1001
 #define LIGHTS_MAX 4000u
@@ -40,79 +37,12 @@ static way ways[] = {
 };
 #define WAYS (sizeof ways / sizeof ways[0])
 
-static struct {
-    VkInstance instance;
-    VkPhysicalDevice physical;
-    VkPhysicalDeviceProperties properties;
-    VkPhysicalDeviceFeatures features;
-    VkDevice device;
-    VkQueue queue;
-    VkCommandPool pool;
-    VkCommandBuffer commands;
-    VkQueryPool queries;
-    uint32_t family;
-} vk;
-
+static bench_vk vk;
 static hdrp_gpu_vk gpu;
 
-static void must(int good, const char* what)
-{
-    if (!good) {
-        fprintf(stderr, "bench_gpu: %s failed\n", what);
-        exit(1);
-    }
-}
-#define VK(call)   must((call) == VK_SUCCESS, #call)
 #define HDRP(call) must((call) == HDRP_OK, #call)
 
-/* ---- the device ------------------------------------------------------------------------------ */
-
-static void choose_device(void)
-{
-    VkQueueFamilyProperties families[16];
-    uint32_t count = 1, family_count = 16;
-    must(vkEnumeratePhysicalDevices(vk.instance, &count, &vk.physical) >= VK_SUCCESS && count > 0,
-         "finding a Vulkan device");
-    vkGetPhysicalDeviceProperties(vk.physical, &vk.properties);
-    vkGetPhysicalDeviceQueueFamilyProperties(vk.physical, &family_count, families);
-    while (vk.family < family_count && !(families[vk.family].queueFlags & VK_QUEUE_COMPUTE_BIT)) {
-        ++vk.family;
-    }
-    must(vk.family < family_count && families[vk.family].timestampValidBits > 0,
-         "finding a queue that computes and tells the time");
-}
-
-static void open_device(void)
-{
-    const float priority = 1.0f;
-    const VkApplicationInfo application = {.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
-                                           .apiVersion = VK_API_VERSION_1_1};
-    const VkInstanceCreateInfo instance = {.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
-                                           .pApplicationInfo = &application};
-    VkDeviceQueueCreateInfo queue = {.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
-                                     .queueCount = 1,
-                                     .pQueuePriorities = &priority};
-    const VkDeviceCreateInfo device = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
-                                       .queueCreateInfoCount = 1,
-                                       .pQueueCreateInfos = &queue,
-                                       .pEnabledFeatures = &vk.features};
-    VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
-                                    .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT};
-    VkCommandBufferAllocateInfo buffer = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-                                          .commandBufferCount = 1};
-    const VkQueryPoolCreateInfo queries = {.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
-                                           .queryType = VK_QUERY_TYPE_TIMESTAMP,
-                                           .queryCount = 2};
-    VK(vkCreateInstance(&instance, NULL, &vk.instance));
-    choose_device();
-    queue.queueFamilyIndex = pool.queueFamilyIndex = vk.family;
-    VK(vkCreateDevice(vk.physical, &device, NULL, &vk.device));
-    vkGetDeviceQueue(vk.device, vk.family, 0, &vk.queue);
-    VK(vkCreateCommandPool(vk.device, &pool, NULL, &vk.pool));
-    buffer.commandPool = vk.pool;
-    VK(vkAllocateCommandBuffers(vk.device, &buffer, &vk.commands));
-    VK(vkCreateQueryPool(vk.device, &queries, NULL, &vk.queries));
-}
+/* ---- commands -------------------------------------------------------------------------------- */
 
 static void begin(void)
 {
@@ -292,7 +222,7 @@ int main(int argc, char** argv)
     }
     must(rounds >= 1 && rounds <= ROUNDS_MAX && (height == 720 || height == 1080) && argc % 2 == 1,
          "reading the options");
-    open_device();
+    bench_vk_open(&vk, VK_QUEUE_COMPUTE_BIT);
     desc.instance = vk.instance;
     desc.physical_device = vk.physical;
     desc.device = vk.device;

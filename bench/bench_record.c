@@ -12,12 +12,11 @@
 #define HDRP_SHADOW_IMPLEMENTATION
 #include "hdrp_gpu_vk_shadow.h"
 
+#include "bench_vk.h"
+
 #include <omp.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <time.h>
-#include <vulkan/vulkan.h>
 
 #include "record_vert.h"
 
@@ -35,11 +34,9 @@ typedef struct object {
     hdrp_v3 size;
 } object;
 
+static bench_vk vk;
+
 static struct {
-    VkInstance instance;
-    VkPhysicalDevice physical;
-    VkDevice device;
-    VkQueue queue;
     /* Of each way, so that each frees its own: of the parts, and of the primary. */
     VkCommandPool pools[WAY_COUNT][LIGHTS * CHUNKS_MAX + 1u];
     VkCommandBuffer buffers[WAY_COUNT][LIGHTS * CHUNKS_MAX + 1u];
@@ -51,20 +48,11 @@ static struct {
     VkFramebuffer framebuffer;
     VkPipelineLayout layout;
     VkPipeline pipeline;
-} vk;
+} maps;
 
 static object* objects;
 static uint32_t object_count = 7000u, chunk_count = 4u, rounds = 51u, threads = 2u;
 static hdrp_shadow_view views[LIGHTS];
-
-static void must(VkResult r, const char* what)
-{
-    if (r != VK_SUCCESS) {
-        fprintf(stderr, "bench_record: %s fails with %d\n", what, (int)r);
-        exit(1);
-    }
-}
-#define MUST(call) must(call, #call)
 
 static double seconds(clockid_t of)
 {
@@ -86,7 +74,7 @@ static void make_scene(void)
 {
     const hdrp_v3 white = {1.0f, 1.0f, 1.0f}, down = {0.1f, -1.0f, 0.2f};
     hdrp_shadow_request requests[LIGHTS];
-    hdrp_u32x4 maps[LIGHTS];
+    hdrp_u32x4 places[LIGHTS];
     uint32_t order[LIGHTS];
     objects = malloc(object_count * sizeof *objects);
     for (uint32_t i = 0u; i < object_count; ++i) {
@@ -98,13 +86,13 @@ static void make_scene(void)
     for (uint32_t i = 0u; i < LIGHTS; ++i) {
         requests[i] = (hdrp_shadow_request){1.0f, 1024u, 1u, 0u, 0u};
     }
-    if (hdrp_shadow_place(ATLAS_PX, 64u, requests, LIGHTS, order, maps, NULL) != HDRP_OK) {
+    if (hdrp_shadow_place(ATLAS_PX, 64u, requests, LIGHTS, order, places, NULL) != HDRP_OK) {
         exit(1);
     }
     for (uint32_t i = 0u; i < LIGHTS; ++i) {
         hdrp_v3 at = hdrp_v3_make(12.0f * (float)i - 12.0f, 18.0f, 0.0f);
         hdrp_light light = hdrp_light_spot(at, down, white, 60.0f, 0.6f, 0.9f);
-        views[i] = hdrp_shadow_view_light(light, 0u, 0.2f, maps[i],
+        views[i] = hdrp_shadow_view_light(light, 0u, 0.2f, places[i],
                                           hdrp_shadow_settings_make(HDRP_SHADOW_FILTER_TENT_3, 1u));
     }
 }
@@ -131,7 +119,7 @@ static VkDeviceMemory allocate(VkMemoryRequirements needs, VkMemoryPropertyFlags
                                        .memoryTypeIndex =
                                            memory_type(needs.memoryTypeBits, wanted)};
     VkDeviceMemory memory;
-    MUST(vkAllocateMemory(vk.device, &info, NULL, &memory));
+    VK(vkAllocateMemory(vk.device, &info, NULL, &memory));
     return memory;
 }
 
@@ -146,45 +134,19 @@ static void make_buffers(int way, uint32_t family)
                                               .level = i < parts ? VK_COMMAND_BUFFER_LEVEL_SECONDARY
                                                                  : VK_COMMAND_BUFFER_LEVEL_PRIMARY,
                                               .commandBufferCount = 1u};
-        MUST(vkCreateCommandPool(vk.device, &pool, NULL, &vk.pools[way][i]));
-        buffer.commandPool = vk.pools[way][i];
-        MUST(vkAllocateCommandBuffers(vk.device, &buffer, &vk.buffers[way][i]));
+        VK(vkCreateCommandPool(vk.device, &pool, NULL, &maps.pools[way][i]));
+        buffer.commandPool = maps.pools[way][i];
+        VK(vkAllocateCommandBuffers(vk.device, &buffer, &maps.buffers[way][i]));
     }
 }
 
 static void open_device(void)
 {
-    const VkApplicationInfo application = {.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
-                                           .apiVersion = VK_API_VERSION_1_1};
-    const VkInstanceCreateInfo instance = {.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
-                                           .pApplicationInfo = &application};
-    const float priority = 1.0f;
-    VkDeviceQueueCreateInfo queue = {.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
-                                     .queueCount = 1u,
-                                     .pQueuePriorities = &priority};
-    const VkDeviceCreateInfo device = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
-                                       .queueCreateInfoCount = 1u,
-                                       .pQueueCreateInfos = &queue};
-    VkPhysicalDeviceProperties properties;
-    VkQueueFamilyProperties families[16];
-    uint32_t one = 1u, count = 16u, k = 0u;
-    MUST(vkCreateInstance(&instance, NULL, &vk.instance));
-    if (vkEnumeratePhysicalDevices(vk.instance, &one, &vk.physical) < VK_SUCCESS || one == 0u) {
-        puts("skipped: no Vulkan device here (Debian: mesa-vulkan-drivers)");
-        exit(0);
-    }
-    vkGetPhysicalDeviceQueueFamilyProperties(vk.physical, &count, families);
-    while (k < count && !(families[k].queueFlags & VK_QUEUE_GRAPHICS_BIT)) {
-        ++k;
-    }
-    queue.queueFamilyIndex = k;
-    MUST(vkCreateDevice(vk.physical, &device, NULL, &vk.device));
-    vkGetDeviceQueue(vk.device, k, 0u, &vk.queue);
-    vkGetPhysicalDeviceProperties(vk.physical, &properties);
+    bench_vk_open(&vk, VK_QUEUE_GRAPHICS_BIT);
     printf("# %s, %u objects, %u lights, %u threads, %u parts of a light, %u turns\n",
-           properties.deviceName, object_count, LIGHTS, threads, chunk_count, rounds);
+           vk.properties.deviceName, object_count, LIGHTS, threads, chunk_count, rounds);
     for (int way = 0; way < WAY_COUNT; ++way) {
-        make_buffers(way, k);
+        make_buffers(way, vk.family);
     }
 }
 
@@ -208,17 +170,17 @@ static void make_atlas(void)
                                   .format = VK_FORMAT_D32_SFLOAT,
                                   .subresourceRange = {VK_IMAGE_ASPECT_DEPTH_BIT, 0u, 1u, 0u, 1u}};
     VkMemoryRequirements needs;
-    MUST(vkCreateImage(vk.device, &image, NULL, &vk.atlas));
-    vkGetImageMemoryRequirements(vk.device, vk.atlas, &needs);
-    vk.atlas_memory = allocate(needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
-    MUST(vkBindImageMemory(vk.device, vk.atlas, vk.atlas_memory, 0u));
-    view.image = vk.atlas;
-    MUST(vkCreateImageView(vk.device, &view, NULL, &vk.view));
-    MUST(vkCreateBuffer(vk.device, &buffer, NULL, &vk.read));
-    vkGetBufferMemoryRequirements(vk.device, vk.read, &needs);
-    vk.read_memory =
+    VK(vkCreateImage(vk.device, &image, NULL, &maps.atlas));
+    vkGetImageMemoryRequirements(vk.device, maps.atlas, &needs);
+    maps.atlas_memory = allocate(needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+    VK(vkBindImageMemory(vk.device, maps.atlas, maps.atlas_memory, 0u));
+    view.image = maps.atlas;
+    VK(vkCreateImageView(vk.device, &view, NULL, &maps.view));
+    VK(vkCreateBuffer(vk.device, &buffer, NULL, &maps.read));
+    vkGetBufferMemoryRequirements(vk.device, maps.read, &needs);
+    maps.read_memory =
         allocate(needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
-    MUST(vkBindBufferMemory(vk.device, vk.read, vk.read_memory, 0u));
+    VK(vkBindBufferMemory(vk.device, maps.read, maps.read_memory, 0u));
 }
 
 static void make_pass(void)
@@ -247,13 +209,13 @@ static void make_pass(void)
                                          .pDependencies = &after};
     VkFramebufferCreateInfo framebuffer = {.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO,
                                            .attachmentCount = 1u,
-                                           .pAttachments = &vk.view,
+                                           .pAttachments = &maps.view,
                                            .width = ATLAS_PX,
                                            .height = ATLAS_PX,
                                            .layers = 1u};
-    MUST(vkCreateRenderPass(vk.device, &pass, NULL, &vk.pass));
-    framebuffer.renderPass = vk.pass;
-    MUST(vkCreateFramebuffer(vk.device, &framebuffer, NULL, &vk.framebuffer));
+    VK(vkCreateRenderPass(vk.device, &pass, NULL, &maps.pass));
+    framebuffer.renderPass = maps.pass;
+    VK(vkCreateFramebuffer(vk.device, &framebuffer, NULL, &maps.framebuffer));
 }
 
 static void make_pipeline(void)
@@ -307,12 +269,12 @@ static void make_pipeline(void)
                                          .pMultisampleState = &samples,
                                          .pDepthStencilState = &depth,
                                          .pDynamicState = &dynamic};
-    MUST(vkCreatePipelineLayout(vk.device, &layout, NULL, &vk.layout));
-    MUST(vkCreateShaderModule(vk.device, &code, NULL, &stage.module));
+    VK(vkCreatePipelineLayout(vk.device, &layout, NULL, &maps.layout));
+    VK(vkCreateShaderModule(vk.device, &code, NULL, &stage.module));
     info.pStages = &stage;
-    info.layout = vk.layout;
-    info.renderPass = vk.pass;
-    MUST(vkCreateGraphicsPipelines(vk.device, VK_NULL_HANDLE, 1u, &info, NULL, &vk.pipeline));
+    info.layout = maps.layout;
+    info.renderPass = maps.pass;
+    VK(vkCreateGraphicsPipelines(vk.device, VK_NULL_HANDLE, 1u, &info, NULL, &maps.pipeline));
     vkDestroyShaderModule(vk.device, stage.module, NULL);
 }
 
@@ -330,13 +292,14 @@ static void record_part(VkCommandBuffer commands, uint32_t light, uint32_t first
 {
     const hdrp_shadow_view* v = &views[light];
     hdrp_gpu_vk_shadow_raster raster = hdrp_gpu_vk_shadow_raster_of(v);
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, vk.pipeline);
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, maps.pipeline);
     vkCmdSetViewport(commands, 0u, 1u, &raster.viewport);
     vkCmdSetScissor(commands, 0u, 1u, &raster.scissor);
     for (uint32_t i = first; i < last; ++i) {
         const hdrp_v4 rows[4] = {row_of(v->clip_x, &objects[i]), row_of(v->clip_y, &objects[i]),
                                  row_of(v->clip_z, &objects[i]), row_of(v->clip_w, &objects[i])};
-        vkCmdPushConstants(commands, vk.layout, VK_SHADER_STAGE_VERTEX_BIT, 0u, sizeof rows, rows);
+        vkCmdPushConstants(commands, maps.layout, VK_SHADER_STAGE_VERTEX_BIT, 0u, sizeof rows,
+                           rows);
         vkCmdDraw(commands, 36u, 1u, 0u, 0u);
     }
 }
@@ -346,8 +309,8 @@ static void record_secondary(int way, uint32_t part)
 {
     const VkCommandBufferInheritanceInfo inherited = {
         .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_INHERITANCE_INFO,
-        .renderPass = vk.pass,
-        .framebuffer = vk.framebuffer};
+        .renderPass = maps.pass,
+        .framebuffer = maps.framebuffer};
     const VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                             .flags =
                                                 VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT |
@@ -355,12 +318,12 @@ static void record_secondary(int way, uint32_t part)
                                             .pInheritanceInfo = &inherited};
     uint32_t light = part / chunk_count, k = part % chunk_count;
     uint64_t n = object_count;
-    VkCommandBuffer commands = vk.buffers[way][part];
-    MUST(vkResetCommandPool(vk.device, vk.pools[way][part], 0u));
-    MUST(vkBeginCommandBuffer(commands, &begin));
+    VkCommandBuffer commands = maps.buffers[way][part];
+    VK(vkResetCommandPool(vk.device, maps.pools[way][part], 0u));
+    VK(vkBeginCommandBuffer(commands, &begin));
     record_part(commands, light, (uint32_t)(n * k / chunk_count),
                 (uint32_t)(n * (k + 1u) / chunk_count));
-    MUST(vkEndCommandBuffer(commands));
+    VK(vkEndCommandBuffer(commands));
 }
 
 /* Time of the processors [s]: that of the busiest thread, and of what follows it. */
@@ -370,13 +333,13 @@ static double record(int way)
                                             .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
     const VkClearValue cleared = {.depthStencil = hdrp_gpu_vk_shadow_raster_of(&views[0]).far_away};
     const VkRenderPassBeginInfo pass = {.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO,
-                                        .renderPass = vk.pass,
-                                        .framebuffer = vk.framebuffer,
+                                        .renderPass = maps.pass,
+                                        .framebuffer = maps.framebuffer,
                                         .renderArea = {{0, 0}, {ATLAS_PX, ATLAS_PX}},
                                         .clearValueCount = 1u,
                                         .pClearValues = &cleared};
     uint32_t parts = LIGHTS * chunk_count;
-    VkCommandBuffer primary = vk.buffers[way][parts];
+    VkCommandBuffer primary = maps.buffers[way][parts];
     double begun = seconds(CLOCK_THREAD_CPUTIME_ID), longest = 0.0;
     if (way != INLINE) {
 #pragma omp parallel num_threads(way == THREADS ? (int)threads : 1) reduction(max : longest)
@@ -391,8 +354,8 @@ static double record(int way)
         }
         begun = seconds(CLOCK_THREAD_CPUTIME_ID);
     }
-    MUST(vkResetCommandPool(vk.device, vk.pools[way][parts], 0u));
-    MUST(vkBeginCommandBuffer(primary, &begin));
+    VK(vkResetCommandPool(vk.device, maps.pools[way][parts], 0u));
+    VK(vkBeginCommandBuffer(primary, &begin));
     vkCmdBeginRenderPass(primary, &pass,
                          way == INLINE ? VK_SUBPASS_CONTENTS_INLINE
                                        : VK_SUBPASS_CONTENTS_SECONDARY_COMMAND_BUFFERS);
@@ -400,7 +363,7 @@ static double record(int way)
         record_part(primary, light, 0u, object_count);
     }
     if (way != INLINE) {
-        vkCmdExecuteCommands(primary, parts, vk.buffers[way]);
+        vkCmdExecuteCommands(primary, parts, maps.buffers[way]);
     }
     vkCmdEndRenderPass(primary);
     return longest + seconds(CLOCK_THREAD_CPUTIME_ID) - begun;
@@ -412,25 +375,25 @@ static uint64_t draw(int way, uint32_t* drawn)
     const VkBufferImageCopy all = {.imageSubresource = {VK_IMAGE_ASPECT_DEPTH_BIT, 0u, 0u, 1u},
                                    .imageExtent = {ATLAS_PX, ATLAS_PX, 1u}};
     VkSubmitInfo submit = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO, .commandBufferCount = 1u};
-    VkCommandBuffer primary = vk.buffers[way][LIGHTS * chunk_count];
+    VkCommandBuffer primary = maps.buffers[way][LIGHTS * chunk_count];
     const uint32_t* texels;
     void* memory;
     uint64_t sum = 0u;
     (void)record(way);
-    vkCmdCopyImageToBuffer(primary, vk.atlas, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, vk.read, 1u,
+    vkCmdCopyImageToBuffer(primary, maps.atlas, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, maps.read, 1u,
                            &all);
-    MUST(vkEndCommandBuffer(primary));
+    VK(vkEndCommandBuffer(primary));
     submit.pCommandBuffers = &primary;
-    MUST(vkQueueSubmit(vk.queue, 1u, &submit, VK_NULL_HANDLE));
-    MUST(vkQueueWaitIdle(vk.queue));
-    MUST(vkMapMemory(vk.device, vk.read_memory, 0u, VK_WHOLE_SIZE, 0u, &memory));
+    VK(vkQueueSubmit(vk.queue, 1u, &submit, VK_NULL_HANDLE));
+    VK(vkQueueWaitIdle(vk.queue));
+    VK(vkMapMemory(vk.device, maps.read_memory, 0u, VK_WHOLE_SIZE, 0u, &memory));
     texels = memory;
     *drawn = 0u;
     for (uint32_t i = 0u; i < ATLAS_PX * ATLAS_PX; ++i) {
         sum = sum * 31u + texels[i];
         *drawn += texels[i] != 0u;
     }
-    vkUnmapMemory(vk.device, vk.read_memory);
+    vkUnmapMemory(vk.device, maps.read_memory);
     return sum;
 }
 
@@ -450,7 +413,7 @@ static void measure(void)
             int way = (int)((i + k) % WAY_COUNT);
             double begin = seconds(CLOCK_MONOTONIC);
             turns[1][way][i] = 1e3 * record(way);
-            MUST(vkEndCommandBuffer(vk.buffers[way][LIGHTS * chunk_count]));
+            VK(vkEndCommandBuffer(maps.buffers[way][LIGHTS * chunk_count]));
             turns[0][way][i] = 1e3 * (seconds(CLOCK_MONOTONIC) - begin);
         }
     }

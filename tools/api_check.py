@@ -48,8 +48,9 @@ DEPENDENCIES = {
     "gpu_vk_cull": "math light cull gpu_vk_core",
     "gpu_vk_env": "math brdf env gpu_vk_core",
     "gpu_vk_light": "math light brdf pack env cull cull_grid shadow gpu_vk_core gpu_vk_cull",
+    "gpu_vk_oit": "math oit gpu_vk_core",
     "gpu_vk_shadow": "math light shadow pack cull_volume gpu_vk_core",
-    "gpu_vk": "gpu_vk_core gpu_vk_cull gpu_vk_env gpu_vk_light gpu_vk_shadow",
+    "gpu_vk": "gpu_vk_core gpu_vk_cull gpu_vk_env gpu_vk_light gpu_vk_oit gpu_vk_shadow",
 }
 SYSTEM_HEADERS = {"<math.h>", "<stdint.h>", "<stddef.h>", "<string.h>", "<float.h>", "<limits.h>",
                   "<vulkan/vulkan.h>", "<vulkan/vulkan_core.h>"}

@@ -5,6 +5,8 @@
     gcn_passes.py --check [PASS...]   fails where a pass takes more registers than it may, and where
                                       the recorded numbers are no longer right; bonaire alone
     gcn_passes.py --write             records them in bench/results
+    gcn_passes.py --half [PASS...]    what they would take with all arithmetic in 16 bits, on the
+                                      families that have it
 
 Registers, local memory (LDS) and occupancy of every embedded shader, and of deferred lighting in
 variants from simple to complex. The words come from the headers; gcn_probe.py says which driver
@@ -20,6 +22,7 @@ import struct
 import sys
 import tempfile
 
+import embed_spirv
 import gcn_probe
 import hdrp_api
 
@@ -97,6 +100,19 @@ def embedded_shaders(root):
             yield Embedded(match["name"], words)
 
 
+def in_halves(shader, folder):
+    """The shader with 16-bit arithmetic, or None where spirv-opt makes no valid module of it."""
+    plain, half = folder / "float.spv", folder / "half.spv"
+    embed_spirv.write_words(plain, shader.words)
+    try:
+        embed_spirv.run("spirv-opt", "--relax-float-ops", "--convert-relaxed-to-half", "-O",
+                        f"--target-env={embed_spirv.TARGET}", plain, "-o", half)
+        embed_spirv.run("spirv-val", "--target-env", embed_spirv.TARGET, half)
+    except embed_spirv.ToolError:
+        return None
+    return Embedded(shader.name, embed_spirv.read_words(half))
+
+
 class Compiled:
     """What gcn_probe.Bench.ask asks about."""
 
@@ -105,9 +121,12 @@ class Compiled:
         self.shader = gcn_probe.gcn_shaders.Shader(name, mask=f"{mask} {bindings}")
 
 
-def compiled_shaders(root, folder, wanted):
+def compiled_shaders(root, folder, wanted, half=False):
     for shader in embedded_shaders(root):
         if wanted and shader.name not in wanted:
+            continue
+        shader = in_halves(shader, folder) if half else shader
+        if not shader:
             continue
         path = folder / f"{shader.name}.spv"
         path.write_bytes(struct.pack(f"<{len(shader.words)}I", *shader.words))
@@ -124,18 +143,19 @@ COLUMNS = ["name", "family", *SHOWN]
 NOTES = """\
 deferred: one module; punctual is the Standard material with points and spots, and what follows a
 + is a feature more. sun: directional lights, mask: their shadow image, sky: the environment"""
+HAVE_HALVES = ["vega10", "gfx1100"]
 CHECKED = "bonaire"  # the family for which --check has time
 # Vector registers on it, at most. The aim for lists is 48 throughout. That of blockers is out of
 # reach: a blocker and its light are 25 numbers, an edge of a tile 21, what its edges say together 11,
 # and all of them are used at once; above 84 registers a few more cost nothing up to 128.
 LIMITS = {"classify": 48, "dispatch": 48, "cull_project": 48, "cull_coarse": 48, "cull_tiles": 48,
           "cull_pixels": 48, "cull_clusters": 48, "cull_blockers": 116, "depth": 48,
-          "deferred:punctual": 48, "deferred:punctual+sun+mask+sky": 64}
+          "oit_composite": 48, "deferred:punctual": 48, "deferred:punctual+sun+mask+sky": 64}
 
 
-def measured_rows(bench, wanted):
+def measured_rows(bench, wanted, half=False):
     """A row for each shader and family."""
-    compiled = list(compiled_shaders(bench.root, bench.folder, wanted))
+    compiled = list(compiled_shaders(bench.root, bench.folder, wanted, half))
     measured = bench.ask_all(compiled)
     return [dict({column: measured[family][c.shader.name].numbers()[column] for column in SHOWN},
                  name=c.shader.name, family=family)
@@ -143,7 +163,7 @@ def measured_rows(bench, wanted):
 
 
 def print_rows(rows):
-    for family in gcn_probe.FAMILIES:
+    for family in sorted({row["family"] for row in rows}, key=gcn_probe.FAMILIES.index):
         print(f"\n{family:<34}" + "".join(f"{head:>14}" for head in SHOWN.values()))
         for row in rows:
             if row["family"] == family:
@@ -214,6 +234,7 @@ def main():
     action = parser.add_mutually_exclusive_group()
     action.add_argument("--check", action="store_true")
     action.add_argument("--write", action="store_true")
+    action.add_argument("--half", action="store_true")
     parser.add_argument("--include", type=pathlib.Path, default=hdrp_api.ROOT,
                         help="folder of the headers")
     parser.add_argument("--results", type=pathlib.Path, default=gcn_probe.RESULTS,
@@ -221,12 +242,13 @@ def main():
     options = parser.parse_args()
     try:
         with tempfile.TemporaryDirectory() as folder:
-            bench = gcn_probe.Bench(folder, options.include, [CHECKED] if options.check else None)
+            families = [CHECKED] if options.check else HAVE_HALVES if options.half else None
+            bench = gcn_probe.Bench(folder, options.include, families)
             if options.check:
                 return check(bench, options.results, options.passes)
             if options.write:
                 return write(bench, options.results)
-            print_rows(measured_rows(bench, options.passes))
+            print_rows(measured_rows(bench, options.passes, options.half))
     except gcn_probe.Skip as missing:
         print(f"skipped: {missing}")
         return gcn_probe.SKIPPED

@@ -409,7 +409,7 @@ SPLIT_FROM = {"brdf_lobes": "brdf", "env_image": "env", "cull_volume": "cull",
               "cull_blocker": "cull", "cull_grid": "cull", "cull_tile": "cull",
               "cull_variant": "cull", "gpu_vk_core": "gpu_vk",
               "gpu_vk_cull": "gpu_vk", "gpu_vk_env": "gpu_vk", "gpu_vk_light": "gpu_vk",
-              "gpu_vk_shadow": "gpu_vk"}
+              "gpu_vk_oit": "gpu_vk", "gpu_vk_shadow": "gpu_vk"}
 
 
 class Header:

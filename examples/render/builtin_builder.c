@@ -141,3 +141,19 @@ void rd_build_camera(rd_builder* b, hdrp_v3 eye, hdrp_v3 target, float fov_y_rad
     c.fov_y_rad = fov_y_rad;
     b->ok = b->ok && rd_scene_add_camera(b->scene, &c);
 }
+
+/* >>scenes */
+
+bool rd_scene_build(rd_scene* scene, rd_builtin which, rd_report* report)
+{
+    static void (*const build[])(rd_builder*) = {rd_build_display, rd_build_street,
+                                                 rd_build_transparency};
+    rd_builder b = {scene, true};
+    memset(scene, 0, sizeof *scene);
+    build[which](&b);
+    if (!b.ok) {
+        return rd_fail(report, "built-in scene", "out of memory");
+    }
+    rd_scene_update_bounds(scene);
+    return true;
+}

@@ -9,6 +9,11 @@ typedef struct rd_builder {
     bool ok; /* false: out of memory; what follows does nothing */
 } rd_builder;
 
+/* The built-in scenes, into an empty one. */
+void rd_build_display(rd_builder* b);
+void rd_build_street(rd_builder* b);
+void rd_build_transparency(rd_builder* b);
+
 rd_affine rd_translation(float x, float y, float z);
 rd_affine rd_rotation_x(float angle);
 rd_affine rd_rotation_y(float angle);

@@ -4,7 +4,6 @@
 #include "builtin_builder.h"
 
 #include <math.h>
-#include <string.h>
 
 /* Houses on each side, from z = 0 on towards -Z. The left side is a mirror image. */
 #define HOUSES      9
@@ -317,31 +316,24 @@ static void add_house(rd_builder* b, const paints* p, float side, int house)
     add_front(b, side, house);
 }
 
-bool rd_scene_build_lights(rd_scene* scene, rd_report* report)
+void rd_build_street(rd_builder* b)
 {
-    rd_builder b = {scene, true};
     paints p;
-    memset(scene, 0, sizeof *scene);
-    scene->slab_color[0] = hdrp_v3_make(0.55f, 0.75f, 0.15f);
-    add_paints(&b, &p);
-    add_box(&b, p.asphalt, 1.0f, hdrp_v3_make(-3.6f, -0.2f, STREET_END),
+    b->scene->slab_color[0] = hdrp_v3_make(0.55f, 0.75f, 0.15f);
+    add_paints(b, &p);
+    add_box(b, p.asphalt, 1.0f, hdrp_v3_make(-3.6f, -0.2f, STREET_END),
             hdrp_v3_make(3.6f, 0.0f, 4.0f), "street");
     for (int i = 0; i < 2; ++i) {
         float side = i ? 1.0f : -1.0f;
-        add_side(&b, &p, side);
+        add_side(b, &p, side);
         for (int house = 0; house < HOUSES; ++house) {
-            add_house(&b, &p, side, house);
+            add_house(b, &p, side, house);
         }
     }
     for (int house = 0; house < HOUSES; ++house) {
-        add_string(&b, &p, house);
+        add_string(b, &p, house);
     }
-    add_street_lights(&b);
-    rd_build_camera(&b, hdrp_v3_make(-2.6f, 1.9f, 0.5f), hdrp_v3_make(1.6f, 1.35f, -10.0f), 0.85f,
+    add_street_lights(b);
+    rd_build_camera(b, hdrp_v3_make(-2.6f, 1.9f, 0.5f), hdrp_v3_make(1.6f, 1.35f, -10.0f), 0.85f,
                     "street");
-    if (!b.ok) {
-        return rd_fail(report, "built-in scene", "out of memory");
-    }
-    rd_scene_update_bounds(scene);
-    return true;
 }

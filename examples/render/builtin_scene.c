@@ -2,8 +2,6 @@
 #include "builtin_builder.h"
 #include "builtin_texture.h"
 
-#include <string.h>
-
 static void set_slot(rd_material* m, rd_slot slot, rd_builtin_texture texture)
 {
     m->slot[slot] = rd_texture_slot_make((int)texture);
@@ -310,35 +308,29 @@ static void add_bulb(rd_builder* b)
                   rd_build_material(b, &m, "bulb"), rd_translation(0.36f, 0.06f, 0.45f), "bulb");
 }
 
-bool rd_scene_build_builtin(rd_scene* scene, rd_report* report)
+void rd_build_display(rd_builder* b)
 {
-    rd_builder b = {scene, true};
-    memset(scene, 0, sizeof *scene);
+    rd_scene* scene = b->scene;
     scene->has_sky = true;
     scene->sun_elevation_rad = 0.52f;
     scene->ground_albedo = hdrp_v3_make(0.14f, 0.22f, 0.26f);
     scene->sun_azimuth_rad = -1.05f;
     scene->slab_color[0] = hdrp_v3_make(0.55f, 0.75f, 0.15f);
-    b.ok = rd_builtin_textures(&scene->textures);
-    add_stage(&b);
-    add_rows(&b);
-    add_clear_coat(&b);
-    add_anisotropy(&b);
-    add_iridescence(&b);
-    add_transmission(&b);
-    add_screen(&b);
-    add_plant(&b);
-    add_pane(&b);
-    add_cloth(&b);
-    add_hammered(&b);
-    add_rock(&b);
-    add_lamps(&b);
-    add_bulb(&b);
-    rd_build_camera(&b, hdrp_v3_make(0.25f, 1.75f, 6.6f), hdrp_v3_make(0.0f, 0.80f, -0.6f), 0.48f,
+    b->ok = rd_builtin_textures(&scene->textures);
+    add_stage(b);
+    add_rows(b);
+    add_clear_coat(b);
+    add_anisotropy(b);
+    add_iridescence(b);
+    add_transmission(b);
+    add_screen(b);
+    add_plant(b);
+    add_pane(b);
+    add_cloth(b);
+    add_hammered(b);
+    add_rock(b);
+    add_lamps(b);
+    add_bulb(b);
+    rd_build_camera(b, hdrp_v3_make(0.25f, 1.75f, 6.6f), hdrp_v3_make(0.0f, 0.80f, -0.6f), 0.48f,
                     "display");
-    if (!b.ok) {
-        return rd_fail(report, "built-in scene", "out of memory");
-    }
-    rd_scene_update_bounds(scene);
-    return true;
 }

@@ -198,6 +198,35 @@ static hdrp_v4 flakes(float u, float v)
     return normal_texel(hdrp_v3_make(tilt * cosf(a), tilt * sinf(a), 1.0f));
 }
 
+/* >>what is transparent */
+
+static float from_centre(float u, float v)
+{
+    return 2.0f * sqrtf(hdrp_sq(u - 0.5f) + hdrp_sq(v - 0.5f));
+}
+
+static hdrp_v4 smoke(float u, float v)
+{
+    float billows = rd_fractal_noise(at(u, v, 4.0f, 0.5f), 4u, 4, 101u);
+    float edge = 1.0f - smooth_step(0.15f, 1.0f, from_centre(u, v));
+    return hdrp_v4_make(1.0f, 1.0f, 1.0f, hdrp_saturate(edge * (0.75f + 0.5f * billows)));
+}
+
+static hdrp_v4 glow(float u, float v)
+{
+    float r = from_centre(u, v), left = hdrp_max(1.0f - r, 0.0f);
+    return hdrp_v4_make(1.0f, 1.0f, 1.0f, left * left * left);
+}
+
+static hdrp_v4 hologram(float u, float v)
+{
+    float line = 0.5f + 0.5f * sinf(v * 20.0f * HDRP_TWO_PI);
+    float column = smooth_step(0.9f, 1.0f, hdrp_abs(sinf(u * 6.0f * HDRP_PI)));
+    float edge = hdrp_min(hdrp_min(u, 1.0f - u), hdrp_min(v, 1.0f - v));
+    float inside = smooth_step(0.02f, 0.12f, edge);
+    return hdrp_v4_make(1.0f, 1.0f, 1.0f, inside * (0.2f + 0.5f * line * line + 0.3f * column));
+}
+
 static float wrapped(float x)
 {
     return x - floorf(x);
@@ -236,6 +265,9 @@ static const recipe recipes[RD_TEX_COUNT] = {
     [RD_TEX_ROCK_COARSE] = {256, 256, NULL, rock_coarse_height, false},
     [RD_TEX_ROCK_FINE] = {256, 256, NULL, rock_fine_height, false},
     [RD_TEX_LABEL] = {128, 128, label, NULL, true},
+    [RD_TEX_SMOKE] = {128, 128, smoke, NULL, true},
+    [RD_TEX_GLOW] = {64, 64, glow, NULL, true},
+    [RD_TEX_HOLOGRAM] = {128, 128, hologram, NULL, true},
 };
 
 static bool allocate(rd_texture* t, const recipe* r, int index)

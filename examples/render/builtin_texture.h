@@ -18,7 +18,10 @@ typedef enum rd_builtin_texture {
     RD_TEX_ROCK_COLOR,
     RD_TEX_ROCK_COARSE, /* normals for triplanar layers */
     RD_TEX_ROCK_FINE,
-    RD_TEX_LABEL, /* alpha and colour of a faded ring */
+    RD_TEX_LABEL,    /* alpha and colour of a faded ring */
+    RD_TEX_SMOKE,    /* alpha of a puff */
+    RD_TEX_GLOW,     /* alpha of a bright point in its halo */
+    RD_TEX_HOLOGRAM, /* alpha of lines on a sheet that fades out */
     RD_TEX_COUNT
 } rd_builtin_texture;
 

@@ -62,6 +62,7 @@ static rd_options small_options(const rd_options* o)
     s.height = s.height > 0 ? s.height : 1;
     s.spp = 1;
     s.quality = RD_QUALITY_FAST;
+    s.oit = RD_OIT_SORTED;
     s.path = RD_PATH_FORWARD; /* a GBuffer would need to know the exposure */
     return s;
 }

@@ -34,6 +34,8 @@ void rd_frame_view_row(const rd_sub_frame* s, rd_worker* w, int y);
 void rd_lists_view_row(const rd_sub_frame* s, rd_worker* w, int y);
 void rd_deferred_row(const rd_sub_frame* s, rd_worker* w, int y);
 void rd_forward_row(const rd_sub_frame* s, rd_worker* w, int y);
+void rd_oit_low_row(const rd_sub_frame* s, rd_worker* w, int y);
+void rd_oit_row(const rd_sub_frame* s, rd_worker* w, int y);
 void rd_layers_row(const rd_sub_frame* s, rd_worker* w, int y);
 void rd_resolve_row(const rd_sub_frame* s, rd_worker* w, int y);
 void rd_reference_row(const rd_sub_frame* s, rd_worker* w, int y);
@@ -55,17 +57,22 @@ static inline uint32_t rd_pixel_hash(const rd_sub_frame* s, int x, int y)
     return hdrp_hash3((uint32_t)x, (uint32_t)y, s->r->options->seed);
 }
 
-static inline rd_ray rd_pixel_ray(const rd_sub_frame* s, int x, int y)
+/* x and y in pixels, with fractions where the sample is not one of a pixel. */
+static inline rd_ray rd_sample_ray(const rd_sub_frame* s, float x, float y)
 {
-    return rd_camera_ray(&s->r->camera, (float)x + s->jitter.x, (float)y + s->jitter.y);
+    return rd_camera_ray(&s->r->camera, x + s->jitter.x, y + s->jitter.y);
 }
 
-/* The part of a pixel that a sample stands for. */
-static inline rd_ray_spread rd_pixel_spread(const rd_sub_frame* s, int x, int y)
+static inline rd_ray rd_pixel_ray(const rd_sub_frame* s, int x, int y)
 {
-    rd_ray_spread r =
-        rd_camera_spread(&s->r->camera, (float)x + s->jitter.x, (float)y + s->jitter.y);
-    float k = hdrp_rsqrt((float)s->r->spp);
+    return rd_sample_ray(s, (float)x, (float)y);
+}
+
+/* The part of an area of so many pixels squared that a sample stands for. */
+static inline rd_ray_spread rd_sample_spread(const rd_sub_frame* s, float x, float y, float pixels)
+{
+    rd_ray_spread r = rd_camera_spread(&s->r->camera, x + s->jitter.x, y + s->jitter.y);
+    float k = pixels * hdrp_rsqrt((float)s->r->spp);
     r.origin_dx = hdrp_v3_scale(r.origin_dx, k);
     r.origin_dy = hdrp_v3_scale(r.origin_dy, k);
     r.direction_dx = hdrp_v3_scale(r.direction_dx, k);
@@ -94,7 +101,7 @@ static inline hdrp_v3 rd_lit_part(const rd_sub_frame* s, const rd_shaded* shaded
 static inline void rd_evaluate(const rd_sub_frame* s, int x, int y, const rd_ray* ray,
                                const rd_hit* hit, rd_surface* out)
 {
-    rd_ray_spread spread = rd_pixel_spread(s, x, y);
+    rd_ray_spread spread = rd_sample_spread(s, (float)x, (float)y, 1.0f);
     rd_surface_evaluate(s->r->scene, ray, &spread, hit, out);
 }
 

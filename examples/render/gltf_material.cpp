@@ -139,6 +139,13 @@ void set_slot(material_importer& m, rd_material* to, rd_slot slot, const json& o
     set_transform(s, part(part(info, "extensions"), "KHR_texture_transform"));
 }
 
+/* A member of `extras`, which may be anything. */
+bool is_marked(const json& from, const char* name)
+{
+    const json& mark = part(part(from, "extras"), name);
+    return mark.is_boolean() && mark.get<bool>();
+}
+
 void read_core(material_importer& m, const json& from, rd_material* to)
 {
     const json& pbr = part(from, "pbrMetallicRoughness");
@@ -156,6 +163,8 @@ void read_core(material_importer& m, const json& from, rd_material* to)
     to->alpha_mode = alpha_mode == "MASK"    ? RD_ALPHA_MASK
                      : alpha_mode == "BLEND" ? RD_ALPHA_BLEND
                                              : RD_ALPHA_OPAQUE;
+    to->additive = to->alpha_mode == RD_ALPHA_BLEND && is_marked(from, "hdrp_additive");
+    to->half_resolution = is_marked(from, "hdrp_half_resolution");
     to->emission_nits = color(from, "emissiveFactor", hdrp_v3_splat(0.0f));
     set_slot(m, to, RD_SLOT_BASE_COLOR, pbr, "baseColorTexture");
     set_slot(m, to, RD_SLOT_METALLIC_ROUGHNESS, pbr, "metallicRoughnessTexture");

@@ -151,8 +151,9 @@ hdrp_v3 rd_emission_nits(const rd_surface* s, float exposure)
 hdrp_brdf_data rd_engine_data(const rd_surface* s, uint32_t features)
 {
     hdrp_brdf_surface b = s->brdf;
-    if (s->material->unlit || features & RD_FEATURE_GREY_CARDS) {
-        return matte(s, s->material->unlit ? 0.0f : HDRP_LIGHT_MIDDLE_GREY);
+    bool dark = s->material->unlit || s->material->additive;
+    if (dark || features & RD_FEATURE_GREY_CARDS) {
+        return matte(s, dark ? 0.0f : HDRP_LIGHT_MIDDLE_GREY);
     }
     b.features &= rd_lighting_material_features(features);
     if (!(features & RD_FEATURE_NORMAL_MAPS)) {

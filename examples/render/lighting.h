@@ -43,7 +43,7 @@ void rd_lighting_free(rd_lighting* l);
 hdrp_u32 rd_lighting_material_features(uint32_t features);
 
 /* Engine data of a surface, with what is switched off left out and its roughness filtered; black
- * for an unlit one. */
+ * for one that is unlit or only adds light. */
 hdrp_brdf_data rd_engine_data(const rd_surface* s, uint32_t features);
 
 /* What a surface emits. Unlit colours are meant for the screen: this is what exposure shows so. */

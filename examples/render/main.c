@@ -38,8 +38,7 @@ static bool load_scene(app* a)
     bool ok;
     rd_progress_show(&a->progress, "scene", 0, 1);
     ok = a->options.scene ? rd_scene_load_gltf(&a->scene, a->options.scene, &a->report)
-         : a->options.builtin == RD_BUILTIN_LIGHTS ? rd_scene_build_lights(&a->scene, &a->report)
-                                                   : rd_scene_build_builtin(&a->scene, &a->report);
+                          : rd_scene_build(&a->scene, a->options.builtin, &a->report);
     rd_stats_pass(&a->stats, "load scene", rd_now_ms() - begin);
     if (!ok) {
         return false;
@@ -362,14 +361,15 @@ static bool finish(app* a)
     return !a->options.stats || rd_stats_write(&a->stats, a->options.stats, &a->report);
 }
 
+/* In statistics; the default has none. */
+static const char* const builtin_names[] = {NULL, "built-in lights", "built-in transparency"};
+
 static bool run(app* a)
 {
     rd_camera camera;
     rd_stats_begin(&a->stats);
     rd_progress_begin(&a->progress, a->options.progress);
-    a->stats.scene = a->options.scene                          ? a->options.scene
-                     : a->options.builtin == RD_BUILTIN_LIGHTS ? "built-in lights"
-                                                               : NULL;
+    a->stats.scene = a->options.scene ? a->options.scene : builtin_names[a->options.builtin];
     a->stats.width = a->options.width;
     a->stats.height = a->options.height;
     if (!load(a) || !choose_camera(a, &camera)) {

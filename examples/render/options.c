@@ -36,6 +36,7 @@ static const struct {
     {"specular_aa", RD_FEATURE_SPECULAR_AA},
     {"lists", RD_FEATURE_LISTS},
     {"blockers", RD_FEATURE_BLOCKERS},
+    {"half_resolution", RD_FEATURE_HALF_RESOLUTION},
     {"all", RD_FEATURE_ALL},
 };
 
@@ -177,10 +178,29 @@ static bool set_path(const argument* a)
     return ok;
 }
 
+static const char* const oit_names[RD_OIT_COUNT] = {"sorted", "mcguire", "volition", "recommended",
+                                                    "front",  "moments", "wavelet"};
+
+const char* rd_oit_name(rd_oit oit)
+{
+    return oit_names[oit];
+}
+
+static bool set_oit(const argument* a)
+{
+    for (int i = 0; i < RD_OIT_COUNT; ++i) {
+        if (!strcmp(a->value, oit_names[i])) {
+            a->options->oit = (rd_oit)i;
+            return true;
+        }
+    }
+    return bad_value(a, "one of sorted|mcguire|volition|recommended|front|moments|wavelet");
+}
+
 static bool set_builtin(const argument* a)
 {
     int i;
-    bool ok = read_word(a, "display|lights", &i);
+    bool ok = read_word(a, "display|lights|transparency", &i);
     a->options->has_builtin = true;
     a->options->builtin = (rd_builtin)i;
     return ok;
@@ -289,7 +309,8 @@ static const struct {
     const char* value;
     const char* help;
 } table[] = {
-    {"--scene", set_builtin, "NAME", "without a file: display (default), or lights, a street"},
+    {"--scene", set_builtin, "NAME",
+     "without a file: display (default), lights (a street), transparency"},
     {"--env", set_env, "FILE", "sky: lat-long or cube, .exr or .hdr (default: a procedural sky)"},
     {"--env-lux", set_env_lux, "LUX", "scale the sky to this illuminance on level ground"},
     {"--out", set_out, "FILE", ".png (tone-mapped) or .exr (linear); default hdrp_render.png"},
@@ -297,6 +318,8 @@ static const struct {
     {"--backend", set_backend, "NAME", "cpu (default) or vulkan: a GPU, else Mesa's lavapipe"},
     {"--quality", set_quality, "NAME", "fast, balanced (default), reference (path traced)"},
     {"--path", set_path, "NAME", "deferred (default) or forward"},
+    {"--oit", set_oit, "NAME",
+     "blended surfaces: sorted (default), or without sorting, see README"},
     {"--spp", set_spp, "N", "samples a pixel; default by quality"},
     {"--lights", set_lights, "N", "scatter N generated lights over the scene"},
     {"--features", set_features, "LIST", "a,b,-c turns features on or off; -all first for a few"},
@@ -361,6 +384,10 @@ static bool check_together(const rd_options* o, rd_report* report)
     }
     if (o->has_camera && o->has_eye) {
         return rd_fail(report, "--eye", "cannot be combined with --camera");
+    }
+    if (o->oit != RD_OIT_SORTED && o->quality == RD_QUALITY_REFERENCE) {
+        return rd_fail(report, "--oit", "%s cannot be combined with --quality reference",
+                       rd_oit_name(o->oit));
     }
     if ((uint64_t)o->width * (uint64_t)o->height > RD_IMAGE_MAX_PIXELS) {
         return rd_fail(report, "--size", "too many pixels");

@@ -265,14 +265,14 @@ static bool passes_by(path* p, const rd_surface* s)
 {
     const rd_material* m = s->material;
     bool culled = s->back_face && !m->double_sided && p->from_eye && !is_volume(m);
-    return culled || (s->alpha < 1.0f && random_number(p) >= s->alpha);
+    return culled || m->additive || (s->alpha < 1.0f && random_number(p) >= s->alpha);
 }
 
 static void emit(path* p, const rd_surface* s, float exposure)
 {
     bool shown = p->from_eye || !(s->material->is_lamp || s->material->unlit);
     if (shown && (!s->back_face || s->material->double_sided)) {
-        add_light(p, rd_emission_nits(s, exposure), 1.0f);
+        add_light(p, rd_emission_nits(s, exposure), s->material->additive ? s->alpha : 1.0f);
     }
 }
 
@@ -430,6 +430,9 @@ static void meet_surface(wave* v, uint32_t index, const rd_hit* hit)
     hdrp_v3 through;
     rd_surface_evaluate(v->s->r->scene, &p->ray, NULL, hit, &x.surface);
     if (passes_by(p, &x.surface)) {
+        if (x.surface.material->additive) {
+            emit(p, &x.surface, v->s->r->exposure);
+        }
         go_on(p, &x.surface, p->ray.direction);
         return;
     }

@@ -30,6 +30,13 @@ static bool allocate_frame(rd_renderer* r, size_t pixels)
            rd_pyramid_begin(&r->pyramid, r->lit, r->width, r->height);
 }
 
+static bool begin_oit(rd_renderer* r)
+{
+    const rd_options* o = r->options;
+    const rd_oit_desc d = {o->oit, r->width, r->height, r->exposure, rd_oit_has_low(o, r->scene)};
+    return o->oit == RD_OIT_SORTED || o->backend != RD_BACKEND_CPU || rd_oit_begin(&r->oit, &d);
+}
+
 static float size_of(const rd_scene* scene)
 {
     hdrp_v3 d = hdrp_v3_sub(scene->bounds.high, scene->bounds.low);
@@ -53,7 +60,7 @@ bool rd_renderer_begin(rd_renderer* r, const rd_renderer_desc* d, rd_report* rep
     r->spp = o->spp ? o->spp : default_spp(o->quality);
     r->hits = (rd_hit*)allocate(pixels, sizeof *r->hits);
     r->film = (float*)allocate(pixels, 4 * sizeof *r->film);
-    if (!r->hits || !r->film || !allocate_frame(r, pixels) ||
+    if (!r->hits || !r->film || !allocate_frame(r, pixels) || !begin_oit(r) ||
         !rd_lists_begin(&r->lists, &r->lighting->lights, (o->features & RD_FEATURE_BLOCKERS) != 0,
                         r->width, r->height, size_of(r->scene))) {
         rd_renderer_end(r);
@@ -68,6 +75,7 @@ void rd_renderer_end(rd_renderer* r)
     rd_gbuffer_free(&r->gbuffer);
     rd_lists_end(&r->lists);
     rd_variants_end(&r->variants);
+    rd_oit_end(&r->oit);
     free(r->visibility[0]);
     free(r->visibility[1]);
     free(r->lit);
@@ -117,18 +125,24 @@ typedef struct schedule {
     double done, total; /* jobs */
 } schedule;
 
+static int jobs_of(int rows)
+{
+    return (rows + ROWS_PER_JOB - 1) / ROWS_PER_JOB;
+}
+
 /* Without memory for a worker its rows stay as they were; the caller's checks come first. */
-static void run_pass(const rd_sub_frame* s, const char* name, rd_row_pass pass, schedule* t)
+static void run_rows(const rd_sub_frame* s, const char* name, rd_row_pass pass, int rows,
+                     schedule* t)
 {
     rd_renderer* r = s->r;
     double begin = rd_now_ms();
-    int jobs = (r->height + ROWS_PER_JOB - 1) / ROWS_PER_JOB;
+    int jobs = jobs_of(rows);
 #pragma omp parallel
     {
         rd_worker* w = (rd_worker*)calloc(1, sizeof *w);
 #pragma omp for schedule(dynamic, 1)
         for (int j = 0; j < jobs; ++j) {
-            int end = (j + 1) * ROWS_PER_JOB < r->height ? (j + 1) * ROWS_PER_JOB : r->height;
+            int end = (j + 1) * ROWS_PER_JOB < rows ? (j + 1) * ROWS_PER_JOB : rows;
             for (int y = j * ROWS_PER_JOB; w && y < end; ++y) {
                 pass(s, w, y);
             }
@@ -147,6 +161,11 @@ static void run_pass(const rd_sub_frame* s, const char* name, rd_row_pass pass, 
     if (r->stats) {
         rd_stats_pass(r->stats, name, rd_now_ms() - begin);
     }
+}
+
+static void run_pass(const rd_sub_frame* s, const char* name, rd_row_pass pass, schedule* t)
+{
+    run_rows(s, name, pass, s->r->height, t);
 }
 
 static void clear_visibility(rd_renderer* r)
@@ -180,7 +199,10 @@ static void transparent(const rd_sub_frame* s, schedule* t)
     if (r->stats) {
         rd_stats_pass(r->stats, "pyramid", rd_now_ms() - begin);
     }
-    run_pass(s, "transparent surfaces", rd_layers_row, t);
+    if (r->oit.has_low) {
+        run_rows(s, "half resolution", rd_oit_low_row, (int)r->oit.low.desc.height_px, t);
+    }
+    run_pass(s, "transparent surfaces", r->oit.present ? rd_oit_row : rd_layers_row, t);
 }
 
 static void lists(const rd_sub_frame* s, rd_view_stage stage)
@@ -254,8 +276,8 @@ static void scale_film(rd_renderer* r)
 
 void rd_render(rd_renderer* r, const rd_camera* camera)
 {
-    int jobs = (r->height + ROWS_PER_JOB - 1) / ROWS_PER_JOB;
-    schedule t = {0.0, (double)passes(r) * r->spp * jobs};
+    int low_jobs = r->oit.has_low ? jobs_of((int)r->oit.low.desc.height_px) : 0;
+    schedule t = {0.0, (double)r->spp * (passes(r) * jobs_of(r->height) + low_jobs)};
     rd_sub_frame s;
     r->camera = *camera;
     s.r = r;

@@ -6,6 +6,7 @@
 #include "gbuffer.h"
 #include "lighting.h"
 #include "lists.h"
+#include "oit.h"
 #include "options.h"
 #include "progress.h"
 #include "pyramid.h"
@@ -40,6 +41,7 @@ typedef struct rd_renderer {
     rd_variants variants;
     hdrp_v3* lit;       /* opaque surfaces and the sky [nits] */
     rd_pyramid pyramid; /* of lit, for what is seen through rough glass */
+    rd_oit_images oit;  /* where blended surfaces are not sorted */
     float* film;        /* RGBA; A is the coverage. Sums, and means once rd_render has returned */
     rd_render_counts counts;
 } rd_renderer;

@@ -62,6 +62,8 @@ typedef struct rd_material {
     rd_alpha_mode alpha_mode;
     float alpha, alpha_cutoff;
     bool double_sided, unlit;
+    bool additive;        /* adds what it emits, alpha of it, and hides nothing */
+    bool half_resolution; /* with --oit: soft enough to be lit at half of the resolution */
     bool is_lamp; /* what it emits is also a light of the scene: reflections show that instead */
     hdrp_v3 base_color;
     float metallic, perceptual_roughness;
@@ -160,9 +162,15 @@ typedef struct rd_scene {
  * for rd_textures_prepare. *scene is to be freed in any case. */
 bool rd_scene_load_gltf(rd_scene* scene, const char* path, rd_report* report);
 
-/* The scene that is shown when no file is given, and a street of many lights. */
-bool rd_scene_build_builtin(rd_scene* scene, rd_report* report);
-bool rd_scene_build_lights(rd_scene* scene, rd_report* report);
+/* The scene that is shown when no file is given, a street of many lights, and transparent things
+ * before the former. */
+typedef enum rd_builtin {
+    RD_BUILTIN_DISPLAY,
+    RD_BUILTIN_LIGHTS,
+    RD_BUILTIN_TRANSPARENCY
+} rd_builtin;
+
+bool rd_scene_build(rd_scene* scene, rd_builtin which, rd_report* report);
 
 void rd_scene_free(rd_scene* scene);
 

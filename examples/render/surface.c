@@ -369,6 +369,7 @@ static void set_base(const patch* p, rd_surface* out)
     float occlusion = sample(p, RD_SLOT_OCCLUSION, white()).x;
     out->brdf.base_color = hdrp_v3_mul(m->base_color, hdrp_v3_from_v4(base));
     out->alpha = m->alpha_mode == RD_ALPHA_BLEND ? hdrp_saturate(m->alpha * base.w) : 1.0f;
+    out->coverage = m->additive ? 0.0f : out->alpha;
     out->brdf.metallic = m->metallic * mr.z;
     out->brdf.perceptual_roughness = m->perceptual_roughness * mr.y;
     out->emission_nits = hdrp_v3_mul(m->emission_nits, hdrp_v3_from_v4(emission));

@@ -24,6 +24,8 @@ typedef struct rd_surface {
     float distance_m;
     hdrp_v3 emission_nits;
     float alpha;
+    float
+        coverage; /* how much of what is behind is hidden: alpha, or 0 where only light is added */
     bool back_face;
     hdrp_u32 light_layers;
     float map_variance;      /* of the normals that the normal map has within the footprint */

@@ -168,7 +168,7 @@ static hdrp_v3 pass_through(const mesh_ref* r, const query* q, uint32_t triangle
                             hdrp_v3 direction)
 {
     const rd_material* m = r->material;
-    float alpha = m->alpha_mode == RD_ALPHA_BLEND ? hdrp_saturate(c.w) : 1.0f;
+    float alpha = m->additive ? 0.0f : m->alpha_mode == RD_ALPHA_BLEND ? hdrp_saturate(c.w) : 1.0f;
     hdrp_v3 open = hdrp_v3_splat(1.0f - alpha);
     if (!(m->transmission > 0.0f) || !passes(m, q->passing)) {
         return open;

@@ -9,7 +9,7 @@ typedef struct rd_vk rd_vk;
 /* Uploads the scene of a renderer. NULL, with an error, where Vulkan or a device is missing, where
  * the device lacks something, and where what is asked for is not done by this backend. */
 rd_vk* rd_vk_open(rd_renderer* r, rd_report* report);
-/* As rd_render. */
+/* As rd_render. The mode of --oit may be another one than before. */
 bool rd_vk_render(rd_vk* vk, rd_renderer* r, const rd_camera* camera);
 void rd_vk_close(rd_vk* vk);
 

@@ -52,6 +52,12 @@ static const struct {
                                  RD_VK_BLEND_NONE},
 };
 
+rd_vk_code rd_vk_vertex_code(bool screen)
+{
+    static const rd_vk_code of_screen = CODE(screen_vert), of_meshes = CODE(mesh_vert);
+    return screen ? of_screen : of_meshes;
+}
+
 /* Features of the materials that a program may meet. */
 static hdrp_u32 features_of(const rd_vk* vk, rd_vk_program program)
 {
@@ -79,8 +85,7 @@ static VkPipeline pipeline_of(rd_vk* vk, rd_vk_program program)
         return *p;
     }
     memset(&desc, 0, sizeof desc);
-    desc.vertex.words = screen ? spirv_screen_vert : spirv_mesh_vert;
-    desc.vertex.bytes = screen ? sizeof spirv_screen_vert : sizeof spirv_mesh_vert;
+    desc.vertex = rd_vk_vertex_code(screen);
     desc.constants = constants;
     desc.constant_count = 3;
     desc.fragment = programs[program].fragment;
@@ -101,26 +106,30 @@ void rd_vk_programs_free(rd_vk* vk)
 
 /* >>draws */
 
-static void draw(rd_vk* vk, rd_vk_program program, uint32_t mesh, uint32_t first, uint32_t count,
-                 bool ordered)
+void rd_vk_draw_piece(rd_vk* vk, const rd_vk_piece* piece)
 {
-    int material = vk->scene.scene->meshes[mesh].material;
-    VkPipeline p = pipeline_of(vk, program);
+    int material = vk->scene.scene->meshes[piece->mesh].material;
     VkCommandBuffer commands = vk->device.commands;
-    const uint32_t push[4] = {mesh, ordered, 0, 0};
-    if (!p) {
-        return;
-    }
-    if (p != vk->bound) {
-        vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, p);
-        vk->bound = p;
-    }
+    const uint32_t push[4] = {piece->mesh, piece->ordered, 0, piece->low};
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, vk->raster.layout, 1, 1,
                             &vk->scene.material_sets[material], 0, NULL);
     vkCmdPushConstants(commands, vk->raster.layout,
                        VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof push,
                        push);
-    vkCmdDraw(commands, count * 3, 1, first * 3, 0);
+    vkCmdDraw(commands, piece->count * 3, 1, piece->first * 3, 0);
+}
+
+static void draw(rd_vk* vk, rd_vk_program program, const rd_vk_piece* piece)
+{
+    VkPipeline p = pipeline_of(vk, program);
+    if (!p) {
+        return;
+    }
+    if (p != vk->bound) {
+        vkCmdBindPipeline(vk->device.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, p);
+        vk->bound = p;
+    }
+    rd_vk_draw_piece(vk, piece);
 }
 
 void rd_vk_bind_frame(rd_vk* vk, int light)
@@ -163,7 +172,8 @@ void rd_vk_draw_meshes(rd_vk* vk, rd_vk_program program, rd_vk_choice choice)
         const rd_mesh* m = &scene->meshes[i];
         const rd_material* material = &scene->materials[m->material];
         if (!rd_material_is_layer(material) && is_chosen(vk, material, choice)) {
-            draw(vk, program, (uint32_t)i, 0, m->triangle_count, false);
+            const rd_vk_piece piece = {(uint32_t)i, 0, m->triangle_count, false, false};
+            draw(vk, program, &piece);
         }
     }
 }
@@ -173,7 +183,8 @@ void rd_vk_draw_layers(rd_vk* vk, rd_vk_program program)
     rd_vk_bind_frame(vk, 1);
     for (uint32_t i = 0; i < vk->order.run_count; ++i) {
         const rd_vk_batch* run = &vk->order.runs[i];
-        draw(vk, program, run->mesh, run->first, run->count, true);
+        const rd_vk_piece piece = {run->mesh, run->first, run->count, true, false};
+        draw(vk, program, &piece);
     }
 }
 

@@ -160,22 +160,27 @@ bool rd_vk_is_lit(const rd_renderer* r)
 static bool make_all(rd_vk* vk, const rd_renderer* r)
 {
     const size_t pixels = (size_t)r->width * (size_t)r->height;
-    VkDescriptorSetLayout layouts[3];
+    VkDescriptorSetLayout layouts[4];
+    vk->options = r->options;
     if (!rd_vk_scene_make(&vk->scene, &vk->device, r->scene) || !rd_vk_order_make(vk) ||
         !rd_vk_mapped_make(&vk->device, sizeof(rd_vk_frame), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
                            &vk->frame) ||
         !rd_vk_mapped_make(&vk->device, pixels * 16, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
                            &vk->picture) ||
-        !make_frame_layout(vk) || !rd_vk_light_layout_make(&vk->light, &vk->device)) {
+        !make_frame_layout(vk) || !rd_vk_light_layout_make(&vk->light, &vk->device) ||
+        !rd_vk_oit_layout_make(&vk->oit, &vk->device)) {
         return false;
     }
     layouts[0] = vk->frame_layout;
     layouts[1] = vk->scene.material_layout;
     layouts[2] = vk->light.layout;
+    layouts[3] = vk->oit.set_layout;
     return make_frame_set(vk) &&
            rd_vk_raster_make(&vk->raster, &vk->device, (uint32_t)r->width, (uint32_t)r->height,
-                             layouts, 3) &&
-           (!rd_vk_is_lit(r) || rd_vk_light_make(&vk->light, &vk->device, r, &vk->raster));
+                             layouts, 4) &&
+           (!rd_vk_is_lit(r) ||
+            (rd_vk_light_make(&vk->light, &vk->device, r, &vk->raster) &&
+             rd_vk_oit_make(&vk->oit, &vk->device, r, &vk->raster, &vk->light.black)));
 }
 
 rd_vk* rd_vk_open(rd_renderer* r, rd_report* report)
@@ -209,6 +214,7 @@ void rd_vk_close(rd_vk* vk)
         rd_vk_casters_free(vk);
         vkDestroyDescriptorPool(device, vk->pool, NULL);
         vkDestroyDescriptorSetLayout(device, vk->frame_layout, NULL);
+        rd_vk_oit_free(&vk->oit, &vk->device);
         rd_vk_light_free(&vk->light, &vk->device);
         rd_vk_raster_free(&vk->raster, &vk->device);
         rd_vk_mapped_free(&vk->device, &vk->frame);

@@ -5,6 +5,7 @@
 #include "frame.h"
 #include "vk_backend.h"
 #include "vk_light.h"
+#include "vk_oit.h"
 #include "vk_raster.h"
 #include "vk_scene.h"
 
@@ -51,6 +52,7 @@ struct rd_vk {
     rd_vk_raster raster;
     rd_vk_order order;
     rd_vk_light light;
+    rd_vk_oit oit;
     rd_vk_mapped frame;   /* rd_vk_frame */
     rd_vk_mapped picture; /* what is read back */
     VkDescriptorSetLayout frame_layout;
@@ -58,6 +60,7 @@ struct rd_vk {
     VkDescriptorSet frame_set;
     VkPipeline programs[RD_VK_PROGRAM_COUNT], casters[2][2], bound;
     rd_vk_frame values;
+    const rd_options* options;
     uint64_t dropped; /* lights that lists had no room for */
 };
 
@@ -71,7 +74,7 @@ void rd_vk_fill_frame(rd_vk* vk, const rd_sub_frame* s);
 /* vk_order.c */
 bool rd_vk_order_make(rd_vk* vk);
 void rd_vk_order_free(rd_vk* vk);
-void rd_vk_order_sort(rd_vk* vk, const rd_camera* camera, uint32_t features);
+void rd_vk_order_sort(rd_vk* vk, const rd_camera* camera);
 
 /* vk_draw.c */
 /* Which opaque meshes. */
@@ -82,16 +85,31 @@ typedef enum rd_vk_choice {
     RD_VK_FORWARD /* that a GBuffer may not hold */
 } rd_vk_choice;
 
+/* Of one triangle over the picture, or of meshes. */
+rd_vk_code rd_vk_vertex_code(bool screen);
 void rd_vk_programs_free(rd_vk* vk);
 /* `light`: which set of lighting; 1 is that of layers. */
 void rd_vk_bind_frame(rd_vk* vk, int light);
 void rd_vk_draw_meshes(rd_vk* vk, rd_vk_program program, rd_vk_choice choice);
+/* All of a mesh, or a run of its sorted triangles, with the pipeline that is bound. */
+typedef struct rd_vk_piece {
+    uint32_t mesh, first, count;
+    bool ordered, low; /* into targets of half the resolution */
+} rd_vk_piece;
+
+void rd_vk_draw_piece(rd_vk* vk, const rd_vk_piece* piece);
 /* The sorted triangles. */
 void rd_vk_draw_layers(rd_vk* vk, rd_vk_program program);
 /* RD_VK_PROGRAM_SKY and _COMPOSITE. */
 void rd_vk_draw_screen(rd_vk* vk, rd_vk_program program);
 /* Materials of layers through which light refracts. */
 bool rd_vk_has_glass(const rd_vk* vk);
+
+/* vk_blended.c */
+/* Has the scene surfaces that are blended without sorting? Are they shown? */
+bool rd_vk_has_blended(const rd_vk* vk);
+/* All passes of the mode, in both resolutions, over the lit picture. */
+bool rd_vk_draw_blended(rd_vk* vk);
 
 /* vk_pyramid.c */
 void rd_vk_keep_opaque(rd_vk* vk);

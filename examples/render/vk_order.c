@@ -98,14 +98,17 @@ static void find_runs(rd_vk_order* o)
     }
 }
 
-static bool is_shown(const rd_scene* scene, int mesh, uint32_t features)
+/* What is blended without sorting is none of those. */
+static bool is_sorted(const rd_vk* vk, int mesh)
 {
+    const rd_scene* scene = vk->scene.scene;
     const rd_material* m = &scene->materials[scene->meshes[mesh].material];
     return is_layer(scene, mesh) &&
-           (features & RD_FEATURE_ALPHA_BLEND || m->alpha_mode != RD_ALPHA_BLEND);
+           (vk->options->features & RD_FEATURE_ALPHA_BLEND || m->alpha_mode != RD_ALPHA_BLEND) &&
+           !(vk->oit.present && rd_oit_is_blended(vk->options, m));
 }
 
-void rd_vk_order_sort(rd_vk* vk, const rd_camera* camera, uint32_t features)
+void rd_vk_order_sort(rd_vk* vk, const rd_camera* camera)
 {
     const rd_scene* scene = vk->scene.scene;
     rd_vk_order* o = &vk->order;
@@ -113,7 +116,7 @@ void rd_vk_order_sort(rd_vk* vk, const rd_camera* camera, uint32_t features)
     o->count = 0;
     for (int i = 0; i < scene->mesh_count; ++i) {
         const rd_mesh* m = &scene->meshes[i];
-        for (uint32_t t = 0; is_shown(scene, i, features) && t < m->triangle_count; ++t) {
+        for (uint32_t t = 0; is_sorted(vk, i) && t < m->triangle_count; ++t) {
             keys[o->count++] = key_of(vk, (uint32_t)i, t, camera);
         }
     }

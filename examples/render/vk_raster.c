@@ -305,27 +305,28 @@ static VkResult make_pipeline(const rd_vk_raster* r, rd_vk_device* d,
     VkPipelineColorBlendAttachmentState blends[COLORS_MAX];
     rd_vk_target colors[COLORS_MAX];
     VkPipelineColorBlendStateCreateInfo blend = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO, .pAttachments = blends};
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO};
     const VkPipelineDynamicStateCreateInfo state = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
         .dynamicStateCount = 2,
         .pDynamicStates = dynamic};
-    const VkGraphicsPipelineCreateInfo info = {.sType =
-                                                   VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
-                                               .stageCount = desc->fragment.words ? 2 : 1,
-                                               .pStages = stages,
-                                               .pVertexInputState = &vertices,
-                                               .pInputAssemblyState = &assembly,
-                                               .pViewportState = &viewport,
-                                               .pRasterizationState = &raster,
-                                               .pMultisampleState = &samples,
-                                               .pDepthStencilState = &depth,
-                                               .pColorBlendState = &blend,
-                                               .pDynamicState = &state,
-                                               .layout = r->layout,
-                                               .renderPass = r->passes[desc->pass]};
-    blend.attachmentCount = colors_of(desc->pass, colors);
-    for (uint32_t i = 0; i < blend.attachmentCount; ++i) {
+    const VkGraphicsPipelineCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
+        .stageCount = desc->fragment.words ? 2 : 1,
+        .pStages = stages,
+        .pVertexInputState = &vertices,
+        .pInputAssemblyState = &assembly,
+        .pViewportState = &viewport,
+        .pRasterizationState = &raster,
+        .pMultisampleState = &samples,
+        .pDepthStencilState = &depth,
+        .pColorBlendState = &blend,
+        .pDynamicState = &state,
+        .layout = r->layout,
+        .renderPass = desc->other_pass ? desc->other_pass : r->passes[desc->pass]};
+    blend.attachmentCount = desc->other_pass ? desc->blend_count : colors_of(desc->pass, colors);
+    blend.pAttachments = desc->other_pass ? desc->blends : blends;
+    for (uint32_t i = 0; !desc->other_pass && i < blend.attachmentCount; ++i) {
         blends[i] = desc->blend == RD_VK_BLEND_BEHIND ? blending_behind(i) : blending(desc->blend);
     }
     return vkCreateGraphicsPipelines(d->device, VK_NULL_HANDLE, 1, &info, NULL, out);

@@ -67,6 +67,9 @@ typedef enum rd_vk_blend {
 typedef struct rd_vk_pipeline_desc {
     rd_vk_code vertex, fragment; /* no fragment code: depth alone */
     rd_vk_pass pass;
+    VkRenderPass other_pass; /* in place of `pass` and `blend`, with a blend state each */
+    const VkPipelineColorBlendAttachmentState* blends;
+    uint32_t blend_count;
     VkCompareOp compare;
     bool writes_depth, clamps_depth;
     rd_vk_blend blend;

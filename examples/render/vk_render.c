@@ -139,7 +139,7 @@ static bool lighting(rd_vk* vk, const rd_sub_frame* s)
     if (vk->order.count > 0) {
         transparent(vk);
     }
-    return true;
+    return !rd_vk_has_blended(vk) || rd_vk_draw_blended(vk);
 }
 
 static void read_back(rd_vk* vk)
@@ -214,8 +214,11 @@ bool rd_vk_render(rd_vk* vk, rd_renderer* r, const rd_camera* camera)
     r->camera = *camera;
     s.r = r;
     memset(r->film, 0, values * sizeof *r->film);
-    rd_vk_order_sort(vk, camera, r->options->features);
-    ok = !rd_vk_is_lit(r) || shadows(vk, r);
+    if (rd_vk_is_lit(r) && vk->oit.made_for != r->options->oit) {
+        ok = rd_vk_oit_make(&vk->oit, &vk->device, r, &vk->raster, &vk->light.black);
+    }
+    rd_vk_order_sort(vk, camera);
+    ok = ok && (!rd_vk_is_lit(r) || shadows(vk, r));
     for (int i = 0; ok && i < r->spp; ++i) {
         s.index = (uint32_t)i;
         s.jitter = rd_camera_jitter(s.index, r->options->seed);

@@ -167,7 +167,8 @@ static void set_factors(rd_vk_material* r, const rd_scene* scene, const rd_mater
     r->slab = hdrp_v4_from_v3(rd_slab_transmittance(scene, m->diffusion_profile, m->slab_thickness),
                               0.0f);
     r->bits[0] = (uint32_t)m->alpha_mode;
-    r->bits[1] = (m->double_sided ? RD_GPU_DOUBLE_SIDED : 0u) | (m->unlit ? RD_GPU_UNLIT : 0u);
+    r->bits[1] = (m->double_sided ? RD_GPU_DOUBLE_SIDED : 0u) | (m->unlit ? RD_GPU_UNLIT : 0u) |
+                 (m->additive ? RD_GPU_ADDITIVE : 0u);
     r->bits[2] = m->features;
     r->bits[3] = m->diffusion_profile;
 }

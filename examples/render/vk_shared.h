@@ -30,6 +30,7 @@
 
 #define RD_GPU_DOUBLE_SIDED            1u
 #define RD_GPU_UNLIT                   2u
+#define RD_GPU_ADDITIVE                4u
 
 /* As RD_FEATURE_... */
 #define RD_GPU_FEATURE_NORMAL_MAPS (1u << 4)

@@ -7,10 +7,10 @@ compiles them; a new header is covered by existing. One that includes a Vulkan h
 where there is none. Groups:
 
     c_gcc c_clang cxx_gcc cxx_clang
-             each header alone and twice in every standard, without and with its implementation; all
-             of them forwards and backwards; before and after <math.h> and <vulkan/vulkan.h>; after
-             the macros of <windows.h>. gcc also optimises and keeps every function, for its flow
-             warnings
+             each header alone and twice in the first and the last standard, without and with its
+             implementation; all of them forwards and backwards; before and after <math.h> and
+             <vulkan/vulkan.h>; after the macros of <windows.h>. gcc also optimises C and keeps
+             every function, for its flow warnings
     m32      each header for a 32-bit target
     link     two translation units, C and C++ mixed, one with the implementations: linked and run
     glsl glsl_es hlsl
@@ -44,7 +44,8 @@ SKIPPED = 77
 COMMAND_TIMEOUT_S = 120
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wdouble-promotion", "-Wshadow",
             "-Werror"]
-STANDARDS = {"c": ["c99", "c11", "c17"], "cxx": ["c++11", "c++20"]}
+ALL_STANDARDS = {"c": ["c99", "c11", "c17"], "cxx": ["c++11", "c++14", "c++17", "c++20"]}
+STANDARDS = {"c": ["c99", "c17"], "cxx": ["c++11", "c++20"]}
 ONE_STANDARD = {"c": "c99", "cxx": "c++11"}
 DRIVER = {("gcc", "c"): "gcc", ("gcc", "cxx"): "g++",
           ("clang", "c"): "clang", ("clang", "cxx"): "clang++"}
@@ -122,10 +123,12 @@ class Matrix:
         return {"all-forwards": self.headers, "all-backwards": self.headers[::-1]}
 
     def standards(self, language):
+        if self.full:
+            return ALL_STANDARDS[language]
         return [ONE_STANDARD[language]] if self.brief else STANDARDS[language]
 
     def few_standards(self, language):
-        return STANDARDS[language] if self.full else [ONE_STANDARD[language]]
+        return ALL_STANDARDS[language] if self.full else [ONE_STANDARD[language]]
 
     def define(self, *headers):
         names = sorted({name for header in headers for name in self.implementations[header]})
@@ -151,12 +154,10 @@ class Matrix:
 
     def contexts(self, header):
         include = self.define(header) + f'#include "{header.name}"\n'
-        around = {"math": "#include <math.h>\n", "vulkan": "#include <vulkan/vulkan.h>\n"}
-        texts = {f"{header.stem}-after-windows": WINDOWS + include}
-        for name, other in around.items():
-            texts[f"{header.stem}-after-{name}"] = other + include
-            texts[f"{header.stem}-before-{name}"] = include + other
-        return texts
+        others = "#include <math.h>\n#include <vulkan/vulkan.h>\n"
+        return {f"{header.stem}-after-windows": WINDOWS + include,
+                f"{header.stem}-after-others": others + include,
+                f"{header.stem}-before-others": include + others}
 
     def order_text(self, headers):
         return self.define(*headers) + "".join(f'#include "{h.name}"\n' for h in headers)
@@ -174,7 +175,7 @@ class Matrix:
                          for standard in standards]
             if not self.brief and not is_part:
                 few.update(self.contexts(header))
-                if compiler == "gcc":
+                if compiler == "gcc" and (language == "c" or self.full):
                     jobs.append(self.host_job(
                         compiler, language, ONE_STANDARD[language], f"{header.stem}-optimised",
                         self.define(header) + f'#include "{header.name}"\n',

@@ -1,9 +1,10 @@
 #version 450
-// Forward lighting and both outputs, as an engine would include them; compiled, not run. Features
-// are a specialization constant.
+// Forward lighting and all outputs, as an engine would include them; compiled, not run. Features are
+// a specialization constant, and so are mode and pass of what is transparent.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "hdrp_gpu_vk_light.h"
+#include "hdrp_oit.h"
 #include "hdrp_shadow.h"
 
 layout(constant_id = 0) const uint FEATURES = HDRP_BRDF_FEATURE_ALL;
@@ -22,8 +23,18 @@ layout(constant_id = 0) const uint FEATURES = HDRP_BRDF_FEATURE_ALL;
 #elif defined(NORMALS)
 #define HDRP_NORMAL_ONLY
 #include "gbuffer_output.glsl"
+#elif defined(TRANSPARENT)
+layout(constant_id = 1) const uint MODE = HDRP_OIT_MODE_RECOMMENDED;
+layout(constant_id = 2) const uint PASS = 0u;
+#define HDRP_OIT_MODE    MODE
+#define HDRP_OIT_PASS    PASS
+#define HDRP_OIT_BINDING 12
+#define HDRP_OIT_SET     1
+#include "oit_output.glsl"
+vec3 color = vec3(0.0);
 #else
-layout(location = 0) out vec4 color;
+layout(location = 0) out vec4 lit;
+vec3 color;
 #endif
 
 layout(location = 0) in vec3 position;
@@ -51,7 +62,17 @@ void main()
     vec3 offset = position - hdrp_v3_from_v4(lighting.camera.eye_near);
     float z_view = dot(offset, hdrp_v3_from_v4(lighting.camera.forward_orthographic));
     uint tile = hdrp_cull_tile_of_pixel(lighting.grid, pixel.x, pixel.y);
-    hdrp_lit_surface r = hdrp_light_surface(d, offset, pixel, tile, z_view, 255u, 1.0);
-    color = vec4((r.diffuse + r.specular) * lighting.scales.x, 1.0);
+#ifdef TRANSPARENT
+    if (hdrp_oit_writes_color())
+#endif
+    {
+        hdrp_lit_surface r = hdrp_light_surface(d, offset, pixel, tile, z_view, 255u, 1.0);
+        color = (r.diffuse + r.specular) * lighting.scales.x;
+    }
+#ifdef TRANSPARENT
+    hdrp_oit_write(hdrp_oit_fragment_make(color * 0.5, vec3(0.0), 0.5, z_view));
+#else
+    lit = vec4(color, 1.0);
+#endif
 #endif
 }

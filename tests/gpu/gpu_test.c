@@ -119,6 +119,7 @@ static bool open_device(gpu_device* d)
     VkPhysicalDeviceFeatures has;
     vkGetPhysicalDeviceFeatures(d->physical, &has);
     d->features.shaderStorageImageWriteWithoutFormat = has.shaderStorageImageWriteWithoutFormat;
+    d->features.independentBlend = has.independentBlend;
     if (vkCreateDevice(d->physical, &info, NULL, &d->device) != VK_SUCCESS) {
         return false;
     }

@@ -4,8 +4,10 @@
 #define HDRP_CULL_IMPLEMENTATION
 #define HDRP_ENV_IMPLEMENTATION
 #define HDRP_GPU_VK_IMPLEMENTATION
+#define HDRP_OIT_IMPLEMENTATION
 #define HDRP_SHADOW_IMPLEMENTATION
 #include "hdrp_brdf.h"
 #include "hdrp_env.h"
 #include "hdrp_gpu_vk.h"
+#include "hdrp_oit.h"
 #include "hdrp_shadow.h"

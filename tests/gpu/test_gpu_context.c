@@ -391,7 +391,7 @@ typedef struct resources {
     hdrp_gpu_vk_variants variants;
     hdrp_gpu_vk_tiles tiles;
     hdrp_gpu_vk_buffer params, views;
-    hdrp_gpu_vk_image lit, visibility;
+    hdrp_gpu_vk_image lit, visibility, composed;
 } resources;
 
 /* What lighting and shadows need besides. */
@@ -415,6 +415,9 @@ static hdrp_result make_lighting(const hdrp_gpu_vk* gpu, resources* made)
                      : r;
     r = r == HDRP_OK ? hdrp_gpu_vk_image_create(gpu, VK_FORMAT_R8G8B8A8_UNORM, 8, 8, both,
                                                 "visibility", &made->visibility)
+                     : r;
+    r = r == HDRP_OK ? hdrp_gpu_vk_image_create(gpu, VK_FORMAT_R16G16B16A16_SFLOAT, 8, 8, both,
+                                                "composed", &made->composed)
                      : r;
     /* Last: it takes longest. */
     return r == HDRP_OK ? hdrp_gpu_vk_variants_create(gpu, &word, 1, &made->variants) : r;
@@ -447,6 +450,7 @@ static hdrp_result make_resources(const hdrp_gpu_vk* gpu, resources* made)
 
 static void destroy_resources(const hdrp_gpu_vk* gpu, resources* made)
 {
+    hdrp_gpu_vk_image_destroy(gpu, &made->composed);
     hdrp_gpu_vk_image_destroy(gpu, &made->visibility);
     hdrp_gpu_vk_image_destroy(gpu, &made->lit);
     hdrp_gpu_vk_buffer_destroy(gpu, &made->views);
@@ -501,6 +505,21 @@ static hdrp_result record_lighting(hdrp_gpu_vk* gpu, VkCommandBuffer commands,
                         : r;
 }
 
+/* Any images serve as targets. */
+static hdrp_result record_composite(hdrp_gpu_vk* gpu, VkCommandBuffer commands,
+                                    const resources* made)
+{
+    hdrp_gpu_vk_oit oit = {0};
+    oit.mode = HDRP_OIT_MODE_WAVELET;
+    oit.full.width_px = oit.full.height_px = 8;
+    oit.full.targets[0] = oit.full.targets[1] = made->sky.view;
+    oit.low = &oit.full;
+    oit.opaque = made->lit.view;
+    oit.opaque_layout = VK_IMAGE_LAYOUT_GENERAL;
+    oit.color = &made->composed;
+    return hdrp_gpu_vk_oit_composite(gpu, commands, &oit);
+}
+
 static hdrp_result record_passes(hdrp_gpu_vk* gpu, VkCommandBuffer commands, resources* made)
 {
     hdrp_gpu_vk_cull_frame frame = {0};
@@ -522,6 +541,7 @@ static hdrp_result record_passes(hdrp_gpu_vk* gpu, VkCommandBuffer commands, res
     frame.layout = sky.layout;
     r = r == HDRP_OK ? hdrp_gpu_vk_build_lists(gpu, commands, &made->lists, &frame) : r;
     r = r == HDRP_OK ? record_lighting(gpu, commands, made) : r;
+    r = r == HDRP_OK ? record_composite(gpu, commands, made) : r;
     return r == HDRP_OK ? hdrp_gpu_vk_tone_map_record(gpu, commands, &map) : r;
 }
 

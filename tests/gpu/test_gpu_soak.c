@@ -142,7 +142,8 @@ static void give_block(void* user, const hdrp_gpu_vk_block* block)
 typedef struct sized {
     uint32_t width, height;
     hdrp_gpu_vk_image depth, lit, shown, diffuse, visibility, rt[5];
-    hdrp_gpu_vk_buffer tiles; /* of hdrp_gpu_vk_measure_depth */
+    hdrp_gpu_vk_image sums[4]; /* of transparent surfaces, in full and in half resolution */
+    hdrp_gpu_vk_buffer tiles;  /* of hdrp_gpu_vk_measure_depth */
     hdrp_cull_desc desc;
     hdrp_cull_camera camera;
     hdrp_gpu_vk_lists lists;
@@ -204,6 +205,9 @@ static void sized_destroy(const engine* e, sized* s)
     for (int i = 0; i < 5; ++i) {
         hdrp_gpu_vk_image_destroy(&e->gpu, &s->rt[i]);
     }
+    for (int i = 0; i < 4; ++i) {
+        hdrp_gpu_vk_image_destroy(&e->gpu, &s->sums[i]);
+    }
     hdrp_gpu_vk_tiles_destroy(&e->gpu, &s->classified);
     hdrp_gpu_vk_buffer_destroy(&e->gpu, &s->tiles);
     hdrp_gpu_vk_lists_destroy(&e->gpu, &s->lists);
@@ -252,6 +256,10 @@ static sized sized_make(const engine* e)
         make_image(e, VK_FORMAT_R8G8B8A8_UNORM, s.width, s.height, VK_IMAGE_USAGE_STORAGE_BIT);
     for (int i = 0; i < 5; ++i) {
         s.rt[i] = make_image(e, formats[i], s.width, s.height, 0u);
+    }
+    for (uint32_t i = 0; i < 4; ++i) {
+        s.sums[i] = make_image(e, VK_FORMAT_R16G16B16A16_SFLOAT, i < 2 ? s.width : s.width / 2 + 1,
+                               i < 2 ? s.height : s.height / 2 + 1, 0u);
     }
     s.shown =
         make_image(e, VK_FORMAT_R8G8B8A8_UNORM, s.width, s.height, VK_IMAGE_USAGE_STORAGE_BIT);
@@ -561,6 +569,51 @@ static hdrp_v4 paint_sky(engine* e, slot* f)
     return light;
 }
 
+/* Fog over everything, in place; what is seen of a pixel then. */
+static hdrp_v4 record_fog(engine* e, slot* f, hdrp_v4 light)
+{
+    static const hdrp_oit_mode modes[4] = {HDRP_OIT_MODE_RECOMMENDED, HDRP_OIT_MODE_WAVELET,
+                                           HDRP_OIT_MODE_FRONT, HDRP_OIT_MODE_TALK};
+    sized* s = &e->now;
+    hdrp_gpu_vk_oit_layer low = {0};
+    hdrp_gpu_vk_oit oit = {0};
+    uint32_t kind = random_whole(0u, 3u);
+    /* No alpha and no light, and what lets all through, but for half of what the first two modes
+     * are given: alpha 1/2 of grey. */
+    bool is_fog = kind < 2u;
+    hdrp_v4 sum = is_fog ? hdrp_v4_make(0.25f, 0.25f, 0.25f, 0.5f) : hdrp_v4_make(0, 0, 0, 0);
+    hdrp_v4 through = hdrp_v4_make(0.0f, 0.0f, 0.0f, is_fog ? 0.5f : 1.0f);
+    if (kind == 3u) {
+        through = hdrp_v4_make(1.0f, 1.0f, 1.0f, 0.0f);
+    }
+    oit.mode = modes[kind];
+    oit.full.width_px = s->width;
+    oit.full.height_px = s->height;
+    low.width_px = s->sums[2].width_px;
+    low.height_px = s->sums[2].height_px;
+    paint(f->commands, s->sums[0].image, sum);
+    paint(f->commands, s->sums[1].image, through);
+    through = kind == 3u ? through : hdrp_v4_make(0.0f, 0.0f, 0.0f, 1.0f);
+    paint(f->commands, s->sums[2].image, hdrp_v4_make(0, 0, 0, 0));
+    paint(f->commands, s->sums[3].image, through);
+    oit.full.targets[0] = s->sums[0].view;
+    oit.full.targets[1] = kind == 2u ? s->sums[0].view : s->sums[1].view;
+    oit.full.targets[2] = kind == 2u ? s->sums[1].view : VK_NULL_HANDLE;
+    low.targets[0] = s->sums[2].view;
+    low.targets[1] = kind == 2u ? s->sums[2].view : s->sums[3].view;
+    low.targets[2] = kind == 2u ? s->sums[3].view : VK_NULL_HANDLE;
+    oit.low = random_number() < 0.5 ? &low : NULL;
+    oit.opaque = s->lit.view;
+    oit.opaque_layout = VK_IMAGE_LAYOUT_GENERAL;
+    oit.color = &s->lit;
+    assert_int_equal(hdrp_gpu_vk_oit_composite(&e->gpu, f->commands, &oit), HDRP_OK);
+    change(f->commands, s->lit.image, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+           VK_IMAGE_LAYOUT_GENERAL);
+    return is_fog ? hdrp_v4_make(0.5f * light.x + 0.25f, 0.5f * light.y + 0.25f,
+                                 0.5f * light.z + 0.25f, light.w)
+                  : light;
+}
+
 static void record_tone_map(engine* e, slot* f, hdrp_v4 light)
 {
     const VkBufferImageCopy region = {.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
@@ -657,6 +710,7 @@ static void run_frame(engine* e)
     if (!is_short() || e->frame % 3u == 0u) { /* lavapipe forgets large shaders after a frame */
         record_lighting(e, f, &params);
     }
+    sky = record_fog(e, f, sky);
     record_tone_map(e, f, sky);
     assert_int_equal(vkEndCommandBuffer(f->commands), VK_SUCCESS);
     submit.pCommandBuffers = &f->commands;

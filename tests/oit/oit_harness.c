@@ -76,7 +76,7 @@ static void over(double* rgb, const hdrp_oit_fragment* f)
     rgb[2] = rgb[2] * through + (double)f->premultiplied.z + (double)f->emission.z;
 }
 
-static int farther_first(const void* a, const void* b)
+int oit_farther_first(const void* a, const void* b)
 {
     float x = ((const hdrp_oit_fragment*)a)->z_view, y = ((const hdrp_oit_fragment*)b)->z_view;
     return x > y ? -1 : x < y;
@@ -87,7 +87,7 @@ static void sort_and_blend(const hdrp_oit_fragment* fragments, size_t count, hdr
 {
     hdrp_oit_fragment sorted[OIT_LAYERS_MAX];
     memcpy(sorted, fragments, count * sizeof *fragments);
-    qsort(sorted, count, sizeof *sorted, farther_first);
+    qsort(sorted, count, sizeof *sorted, oit_farther_first);
     rgb[0] = (double)behind.x;
     rgb[1] = (double)behind.y;
     rgb[2] = (double)behind.z;

@@ -44,6 +44,9 @@ extern const oit_case oit_cases[];
 extern const size_t oit_case_count;
 const char* oit_mode_name(hdrp_oit_mode mode);
 
+/* For qsort, on fragments. */
+int oit_farther_first(const void* a, const void* b);
+
 void oit_generate(const oit_case* c, oit_pixels* p);
 void oit_free(oit_pixels* p);
 oit_error oit_measure(const oit_case* c, const oit_pixels* p, hdrp_oit_mode mode,

@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "oit_harness.h"
+#include "oit_motion.h"
 
 static const char* const precisions[] = {"native", "compact", "float"};
 
@@ -164,6 +165,50 @@ static void errors_are_those_on_record(void** state)
     fclose(in);
 }
 
+/* One pass changes as smoothly as the scene; better modes are as abrupt as sorting each pixel. */
+static void nothing_jumps_that_sorting_cards_makes_jump(void** state)
+{
+    motion_step crossing[MOTION_WAYS], orbit[MOTION_WAYS];
+    (void)state;
+    assert_true(motion_measure(MOTION_CROSSING, crossing) && motion_measure(MOTION_ORBIT, orbit));
+    assert_true(crossing[MOTION_SORTED_CARDS].picture > 0.05);
+    for (int way = 0; way < HDRP_OIT_MODE_COUNT; ++way) {
+        assert_true(crossing[way].picture <= 0.15 * crossing[MOTION_SORTED_CARDS].picture);
+        assert_true(crossing[way].picture <= 0.5 * crossing[MOTION_SORTED_PIXELS].picture);
+    }
+    assert_true(orbit[HDRP_OIT_MODE_RECOMMENDED].picture <= 0.001);
+    assert_true(orbit[HDRP_OIT_MODE_RECOMMENDED].pixel <= 0.01);
+    for (int way = HDRP_OIT_MODE_WAVELET; way <= HDRP_OIT_MODE_MOMENTS_4; ++way) {
+        assert_true(orbit[way].picture <= 1.05 * orbit[MOTION_SORTED_PIXELS].picture);
+    }
+}
+
+static void steps_are_those_on_record(void** state)
+{
+    char line[256], name[32], way_name[32];
+    double picture, pixel, rms;
+    FILE* in = fopen(OIT_STEPS_RECORDED, "r");
+    (void)state;
+    assert_non_null(in);
+    assert_non_null(fgets(line, sizeof line, in));
+    for (int s = 0; s < MOTION_SEQUENCES; ++s) {
+        motion_step steps[MOTION_WAYS];
+        assert_true(motion_measure((motion_sequence)s, steps));
+        for (int way = 0; way < MOTION_WAYS; ++way) {
+            assert_non_null(fgets(line, sizeof line, in));
+            assert_int_equal(
+                sscanf(line, "%31[^,],%31[^,],%lf,%lf,%lf", name, way_name, &picture, &pixel, &rms),
+                5);
+            assert_string_equal(name, motion_sequence_name((motion_sequence)s));
+            assert_string_equal(way_name, motion_way_name(way));
+            assert_true(fabs(steps[way].picture - picture) <= 0.02 * picture + 2e-5);
+            assert_true(fabs(steps[way].error - rms) <= 0.02 * rms + 2e-5);
+        }
+    }
+    assert_null(fgets(line, sizeof line, in));
+    fclose(in);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -175,6 +220,8 @@ int main(void)
         cmocka_unit_test(what_only_adds_is_exact_with_emission_apart),
         cmocka_unit_test(a_dense_front_hides_what_is_behind),
         cmocka_unit_test(errors_are_those_on_record),
+        cmocka_unit_test(nothing_jumps_that_sorting_cards_makes_jump),
+        cmocka_unit_test(steps_are_those_on_record),
     };
     return cmocka_run_group_tests_name("oit errors", tests, NULL, NULL);
 }

@@ -22,6 +22,8 @@ WRONG = [
     (["--backend", "metal"], "--backend"),
     (["--quality", "best"], "--quality"),
     (["--path", "tiled"], "--path"),
+    (["--oit", "alphabetical"], "--oit"),
+    (["--oit", "wavelet", "--quality", "reference"], "--oit"),
     (["--view", "everything"], "--view"),
     (["--scene", "moon"], "--scene"),
     (["--scene", "lights", "a.glb"], "--scene"),

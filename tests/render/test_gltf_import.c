@@ -251,6 +251,29 @@ static void texture_transforms_scale_then_rotate_then_shift(void** state)
     rd_scene_free(&s);
 }
 
+/* What glTF has no word for. Extras may be anything, and other marks are none. */
+static void extras_mark_what_is_additive_or_soft(void** state)
+{
+    static const char* const marked[4] = {"{\"hdrp_additive\":true,\"hdrp_half_resolution\":true}",
+                                          "[true]", "\"hdrp_additive\"",
+                                          "{\"hdrp_additive\":1,\"hdrp_half_resolution\":false}"};
+    (void)state;
+    for (int i = 0; i < 4; ++i) {
+        const char* modes[2] = {"BLEND", "MASK"};
+        for (int k = 0; k < 2; ++k) {
+            char rest[400];
+            rd_scene s;
+            snprintf(rest, sizeof rest, ",\"materials\":[{\"alphaMode\":\"%s\",\"extras\":%s}]",
+                     modes[k], marked[i]);
+            write_gltf("four", 4, rest);
+            s = load();
+            assert_int_equal(s.materials[0].additive, i == 0 && k == 0);
+            assert_int_equal(s.materials[0].half_resolution, i == 0);
+            rd_scene_free(&s);
+        }
+    }
+}
+
 static void a_buffer_may_be_the_beginning_of_a_longer_file(void** state)
 {
     static const float data[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 7, 7, 7};
@@ -470,6 +493,7 @@ int main(void)
         cmocka_unit_test(sparse_values_replace_single_elements),
         cmocka_unit_test(normalized_integers_cover_zero_to_one),
         cmocka_unit_test(texture_transforms_scale_then_rotate_then_shift),
+        cmocka_unit_test(extras_mark_what_is_additive_or_soft),
         cmocka_unit_test(a_buffer_may_be_the_beginning_of_a_longer_file),
         cmocka_unit_test(file_names_may_contain_a_plus_sign),
         cmocka_unit_test(integers_of_extensions_may_be_large),

@@ -54,6 +54,12 @@ class Passes(unittest.TestCase):
     def test_recorded_numbers_are_what_is_measured(self):
         self.assertIn("2 passes are as measured", self.expect(0, "--check", "depth", "dispatch"))
 
+    def test_half_precision_is_compiled_where_gpus_have_it(self):
+        output = self.expect(0, "--half", "tone_map")
+        self.assertRegex(output, r"tone_map +\d\d\d")
+        self.assertNotIn("bonaire", output)
+        self.assertNotEqual(output, self.expect(0, "tone_map"))
+
     def test_a_changed_number_is_noticed(self):
         self.change(self.recorded(), r"^depth,bonaire,\d+,", "depth,bonaire,7,")
         output = self.expect(1, "--check", "depth")

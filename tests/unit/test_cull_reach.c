@@ -153,6 +153,50 @@ static void boxes_enclose_the_pixels_of_their_blocks(void** state)
     }
 }
 
+/* Bounds of [lo,hi] times a depth of [nearest,farthest]. */
+static void scaled(double lo, double hi, double nearest, double farthest, double out[2])
+{
+    out[0] = fmin(lo * nearest, lo * farthest);
+    out[1] = fmax(hi * nearest, hi * farthest);
+}
+
+/* The edges of a block of 8 x 8 pixels, whose place in the picture is known, against its box: each
+ * side of that is outside of them, by no more than what a tile is wider than its pixels. The tile of
+ * 32 x 32 pixels at (64,32) may be cut by the end of the picture, its blocks are not. */
+static void boxes_are_hardly_wider_than_their_blocks(void** state)
+{
+    uint64_t seed = 10;
+    (void)state;
+    for (int i = 0; i < 20000; ++i) {
+        hdrp_cull_camera c = random_camera(&seed, i & 1);
+        float flat = c.forward_orthographic.w;
+        float width = floorf((float)test_uniform(&seed, 65, 129));
+        float height = floorf((float)test_uniform(&seed, 33, 97));
+        hdrp_cull_tile tile =
+            hdrp_cull_tile_make(c, 64, 32, fminf(width, 96), fminf(height, 64), width, height);
+        double px = (double)c.window.z / (double)width, py = (double)c.window.w / (double)height;
+        hdrp_v2 size = hdrp_v2_make((float)(8.0 * px), (float)(8.0 * py));
+        hdrp_u32 block = (hdrp_u32)(i / 2 % 16);
+        float lo = (float)test_log_uniform(&seed, 0.1, 50), hi = lo * 1.5f;
+        hdrp_cull_box b = hdrp_cull_block_box(tile.window, size, block, interval(lo, hi), flat);
+        double k0 = flat > 0.0f ? 1.0 : (double)lo, k1 = flat > 0.0f ? 1.0 : (double)hi;
+        double left = (double)c.window.x + (64 + block % 4 * 8) * px;
+        double top = (double)c.window.y + ((double)height - 32 - block / 4 * 8) * py;
+        double x_slack = 4e-6 * (fabs((double)c.window.x) + (double)c.window.z) * k1;
+        double y_slack = 4e-6 * (fabs((double)c.window.y) + (double)c.window.w) * k1;
+        /* The margin of a cut tile is on one side: that moves edges, but no centre, of pixels out. */
+        double x_cut = width < 96.0f ? x_slack : 0.0, y_cut = height < 64.0f ? y_slack : 0.0;
+        double x[2], y[2];
+        scaled(left, left + 8.0 * px, k0, k1, x);
+        scaled(top - 8.0 * py, top, k0, k1, y);
+        assert_true((double)b.low.x <= x[0] + x_cut && (double)b.low.x >= x[0] - x_slack);
+        assert_true((double)b.high.x >= x[1] - x_cut && (double)b.high.x <= x[1] + x_slack);
+        assert_true((double)b.low.y <= y[0] + y_cut && (double)b.low.y >= y[0] - y_slack);
+        assert_true((double)b.high.y >= y[1] - y_cut && (double)b.high.y <= y[1] + y_slack);
+        assert_true(b.low.z == lo && b.high.z == hi);
+    }
+}
+
 static void blocks_of_sky_are_out_of_reach(void** state)
 {
     hdrp_cull_box b = hdrp_cull_block_box(hdrp_v4_make(-1, 1, -1, 1), hdrp_v2_make(0.5f, 0.5f), 5,
@@ -215,6 +259,7 @@ int main(void)
         cmocka_unit_test(coarse_cells_hold_whole_tiles_and_share_no_column),
         cmocka_unit_test(bounds_of_nothing_reach_no_cell),
         cmocka_unit_test(boxes_enclose_the_pixels_of_their_blocks),
+        cmocka_unit_test(boxes_are_hardly_wider_than_their_blocks),
         cmocka_unit_test(blocks_of_sky_are_out_of_reach),
         cmocka_unit_test(balls_reach_and_contain_boxes_as_their_points_say),
     };

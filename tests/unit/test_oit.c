@@ -423,37 +423,92 @@ static void splits_give_the_same_bits(void** state)
     }
 }
 
-static void a_low_layer_joins_as_if_it_were_full(void** state)
+/* Passes of range and absorption see all fragments in both resolutions, the last one its own. */
+static void blend_both(picture* p, const hdrp_oit_fragment* f, int own, uint32_t pixel)
+{
+    const uint32_t pixels[2] = {pixel, pixel};
+    uint32_t last = hdrp_oit_pass_count(p->image.desc.mode) - 1u;
+    for (uint32_t pass = 0; pass < last; ++pass) {
+        hdrp_oit_blend_rows(&p->image, pass, f, pixels, 2, 0, p->image.desc.height_px);
+    }
+    hdrp_oit_blend_rows(&p->image, last, f + own, pixels, 1, 0, p->image.desc.height_px);
+}
+
+static void check_low(hdrp_oit_mode mode, int near_is_low)
 {
     const hdrp_v3 behind = v3(0.3f, 0.5f, 0.9f);
+    picture high = make_picture(4, 4, mode, HDRP_OIT_PRECISION_FLOAT);
+    picture low = make_picture(2, 2, mode, HDRP_OIT_PRECISION_FLOAT);
+    hdrp_oit_fragment f[2] = {random_fragment(), random_fragment()};
+    hdrp_v3 both, backdrop[16], color[16];
+    f[0].z_view = near_is_low ? 9.0f : 5.0f;
+    f[1].z_view = near_is_low ? 5.0f : 9.0f;
+    both = color_of(f, 2, behind, mode, HDRP_OIT_PRECISION_FLOAT);
+    for (uint32_t i = 0; i < 16u; ++i) {
+        backdrop[i] = behind;
+        blend_both(&high, f, 0, i);
+    }
+    for (uint32_t i = 0; i < 4u; ++i) {
+        blend_both(&low, f, 1, i);
+    }
+    assert_int_equal(hdrp_oit_merge_rows(&high.image, &low.image, 0, 1), HDRP_OK);
+    assert_int_equal(hdrp_oit_merge_rows(&high.image, &low.image, 1, 9), HDRP_OK);
+    hdrp_oit_composite_rows(&high.image, backdrop, color, 0, 4);
+    for (int i = 0; i < 16; ++i) {
+        assert_color(color[i], both, 2e-6);
+    }
+    free(high.memory);
+    free(low.memory);
+}
+
+static void a_low_layer_joins_as_if_it_were_full(void** state)
+{
     (void)state;
     for (int m = 0; m < HDRP_OIT_MODE_COUNT; ++m) {
-        hdrp_oit_mode mode = (hdrp_oit_mode)m;
-        picture high = make_picture(4, 4, mode, HDRP_OIT_PRECISION_FLOAT);
-        picture low = make_picture(2, 2, mode, HDRP_OIT_PRECISION_FLOAT);
-        hdrp_oit_fragment f[2] = {random_fragment(), random_fragment()};
-        hdrp_v3 both = color_of(f, 2, behind, mode, HDRP_OIT_PRECISION_FLOAT);
-        hdrp_v3 backdrop[16], color[16];
-        for (uint32_t i = 0; i < 16u; ++i) {
-            backdrop[i] = behind;
-            blend(&high, &f[0], &i, 1);
+        for (int i = 0; i < 8; ++i) {
+            check_low((hdrp_oit_mode)m, i & 1);
         }
-        for (uint32_t i = 0; i < 4u; ++i) {
-            blend(&low, &f[1], &i, 1);
-        }
-        if (hdrp_oit_pass_count(mode) > 1u) {
-            assert_int_equal(hdrp_oit_merge_rows(&high.image, &low.image, 0, 4),
-                             HDRP_ERROR_BAD_ARGUMENT);
-        } else {
-            assert_int_equal(hdrp_oit_merge_rows(&high.image, &low.image, 0, 4), HDRP_OK);
-            hdrp_oit_composite_rows(&high.image, backdrop, color, 0, 4);
-            for (int i = 0; i < 16; ++i) {
-                assert_color(color[i], both, 2e-6);
-            }
+    }
+}
+
+/* A column that is covered at half of the resolution fades over the next two pixels: what was added
+ * does, too, whichever target it went to. */
+static void low_pixels_fade_into_each_other(void** state)
+{
+    const float share[8] = {1.0f, 1.0f, 1.0f, 0.75f, 0.25f, 0.0f, 0.0f, 0.0f};
+    const hdrp_oit_fragment f = fragment(v3(0.5f, 0.5f, 0.5f), v3(0.25f, 0, 0), 0.5f, 4.0f);
+    (void)state;
+    for (int m = 0; m < HDRP_OIT_MODE_TALK; ++m) {
+        picture high = make_picture(8, 1, (hdrp_oit_mode)m, HDRP_OIT_PRECISION_FLOAT);
+        picture low = make_picture(4, 1, (hdrp_oit_mode)m, HDRP_OIT_PRECISION_FLOAT);
+        const uint32_t pixels[2] = {0, 1};
+        const hdrp_oit_fragment both[2] = {f, f};
+        hdrp_v3 behind[8], color[8];
+        memset(behind, 0, sizeof behind);
+        blend(&low, both, pixels, 2);
+        assert_int_equal(hdrp_oit_merge_rows(&high.image, &low.image, 0, 1), HDRP_OK);
+        hdrp_oit_composite_rows(&high.image, behind, color, 0, 1);
+        for (int i = 0; i < 8; ++i) {
+            assert_true(fabsf(color[i].y - 0.25f * share[i]) < 1e-6f);
         }
         free(high.memory);
         free(low.memory);
     }
+}
+
+static void other_modes_do_not_join(void** state)
+{
+    picture a = make_picture(2, 2, HDRP_OIT_MODE_WAVELET, HDRP_OIT_PRECISION_NATIVE);
+    picture b = make_picture(2, 2, HDRP_OIT_MODE_MOMENTS_6, HDRP_OIT_PRECISION_NATIVE);
+    picture c = make_picture(2, 2, HDRP_OIT_MODE_WAVELET, HDRP_OIT_PRECISION_FLOAT);
+    (void)state;
+    assert_int_equal(hdrp_oit_merge_rows(&a.image, &b.image, 0, 2), HDRP_ERROR_BAD_ARGUMENT);
+    assert_int_equal(hdrp_oit_merge_rows(&a.image, &c.image, 0, 2), HDRP_ERROR_BAD_ARGUMENT);
+    assert_int_equal(hdrp_oit_merge_rows(NULL, &a.image, 0, 2), HDRP_ERROR_NULL_POINTER);
+    assert_int_equal(hdrp_oit_merge_rows(&a.image, NULL, 0, 2), HDRP_ERROR_NULL_POINTER);
+    free(a.memory);
+    free(b.memory);
+    free(c.memory);
 }
 
 static void merged_sums_are_those_of_both(void** state)
@@ -563,6 +618,36 @@ static void exports_go_by_their_weights(void** state)
     assert_color(hdrp_oit_talk_composite(d, v3(1, 1, 1)), v3(1.3125f, 1.78125f, 0.5f), 2.0);
 }
 
+/* Each mode by its own text: published equations written out here, others by what they call. */
+static void modes_choose_their_weights(void** state)
+{
+    const hdrp_oit_talk_settings s = hdrp_oit_talk_settings_make(0.5f, 2.0f);
+    const double alpha = 0.375, z = 20.0, depth = 0.75;
+    hdrp_oit_fragment f = fragment(v3(1, 0.5f, 0), v3(0, 1, 0), (float)alpha, (float)z);
+    const double expected[HDRP_OIT_MODE_COUNT] = {
+        (double)hdrp_oit_weight(f.z_view, f.alpha),
+        (double)hdrp_oit_weight(f.z_view, f.alpha),
+        (double)hdrp_oit_weight(f.z_view, f.alpha),
+        (double)hdrp_oit_weight(f.z_view, f.alpha),
+        (double)hdrp_oit_weight(f.z_view, f.alpha),
+        alpha * 10.0 / (1e-5 + pow(z / 5.0, 2.0) + pow(z / 200.0, 6.0)),
+        alpha * 10.0 / (1e-5 + pow(z / 10.0, 3.0) + pow(z / 200.0, 6.0)),
+        alpha * 0.03 / (1e-5 + pow(z / 200.0, 4.0)),
+        alpha * 3e3 * pow(1.0 - depth, 3.0),
+        3000.0, /* the limit: 1.01^3 * 1e8 * (1 - 0.9 * 0.75)^3 is more */
+        (double)hdrp_oit_talk_weight(f, s),
+        (double)hdrp_oit_weight(f.z_view, f.alpha)};
+    (void)state;
+    for (uint32_t mode = 0; mode < HDRP_OIT_MODE_COUNT; ++mode) {
+        float w = hdrp_oit_mode_weight(mode, f, (float)depth, s);
+        assert_true(fabs((double)w - expected[mode]) <= 2e-6 * expected[mode]);
+    }
+    assert_true(hdrp_oit_mode_weight(HDRP_OIT_MODE_COUNT, f, 0.5f, s) == (float)expected[0]);
+    f.alpha = 0.05f;
+    assert_true(hdrp_oit_mode_weight(HDRP_OIT_MODE_2015, f, 0.999f, s) ==
+                hdrp_oit_weight_2015(0.999f, 0.05f));
+}
+
 static void the_front_is_kept_apart(void** state)
 {
     hdrp_oit_fragment f = fragment(v3(1, 0.5f, 0), v3(0, 1, 0), 0.5f, 20.0f);
@@ -600,11 +685,14 @@ int main(void)
         cmocka_unit_test(additive_layers_end_at_eight_only_in_the_talk),
         cmocka_unit_test(splits_give_the_same_bits),
         cmocka_unit_test(a_low_layer_joins_as_if_it_were_full),
+        cmocka_unit_test(low_pixels_fade_into_each_other),
+        cmocka_unit_test(other_modes_do_not_join),
         cmocka_unit_test(merged_sums_are_those_of_both),
         cmocka_unit_test(targets_are_rounded_as_they_are_stored),
         cmocka_unit_test(bad_descriptions_are_rejected),
         cmocka_unit_test(the_front_is_kept_apart),
         cmocka_unit_test(exports_go_by_their_weights),
+        cmocka_unit_test(modes_choose_their_weights),
     };
     return cmocka_run_group_tests_name("oit", tests, NULL, NULL);
 }

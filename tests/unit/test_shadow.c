@@ -1,43 +1,9 @@
-/* test_shadow.c - cascades, views, bias, filters and the atlas of hdrp_shadow.h.
+/* test_shadow.c - cascades, bias, filters and the atlas of hdrp_shadow.h.
  * SPDX-License-Identifier: MIT */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
-
 #define HDRP_SHADOW_IMPLEMENTATION
-#include "hdrp_shadow.h"
-
-#include "../shadow_scene.h"
+#include "shadow_test.h"
 
 #define ATLAS 256
-
-static uint64_t random_state = 1;
-
-static float uniform(float lo, float hi)
-{
-    random_state = random_state * 6364136223846793005u + 1442695040888963407u;
-    return lo + (hi - lo) * (float)(random_state >> 40) * 0x1p-24f;
-}
-
-static hdrp_v3 v3(float x, float y, float z)
-{
-    return hdrp_v3_make(x, y, z);
-}
-
-static hdrp_v3 direction(void)
-{
-    hdrp_v3 d;
-    do {
-        d = v3(uniform(-1.0f, 1.0f), uniform(-1.0f, 1.0f), uniform(-1.0f, 1.0f));
-    } while (hdrp_v3_dot(d, d) > 1.0f || hdrp_v3_dot(d, d) < 0.01f);
-    return hdrp_v3_normalize(d);
-}
 
 static float texels[ATLAS * ATLAS];
 static const hdrp_shadow_atlas atlas = {texels, ATLAS, ATLAS, 0};
@@ -45,11 +11,6 @@ static const hdrp_shadow_atlas atlas = {texels, ATLAS, ATLAS, 0};
 static void draw(const hdrp_shadow_view* v, const scene* s)
 {
     scene_draw(v, s, texels, ATLAS);
-}
-
-static hdrp_u32x4 square(uint32_t x, uint32_t y, uint32_t size)
-{
-    return hdrp_u32x4_make(x, y, size, 0);
 }
 
 /* ---- cascades -------------------------------------------------------------------------------- */

@@ -23,7 +23,7 @@ void main()
                           ? lit.transmitted_perceptual_roughness
                           : 0.0;
     float radius = blur_radius(s.distance_m, roughness);
-    through = vec4(vec3(1.0 - s.alpha) + lit.transmitted_weight * s.alpha, 1.0 - s.alpha);
+    through = vec4(vec3(1.0 - s.coverage) + lit.transmitted_weight * s.coverage, 1.0 - s.coverage);
     moved_px = vec4(bends ? place_of(source) - straight : vec2(0.0), radius * radius, 0.0);
     most = vec4(bends ? 1.0 / s.distance_m : 0.0, roughness, 0.0, 0.0);
     direction = vec4(bends ? lit.transmitted_direction : vec3(0.0), bends ? 1.0 : 0.0);

@@ -28,6 +28,12 @@ bool is_unlit()
     return (MATERIAL.bits.y & RD_GPU_UNLIT) != 0u;
 }
 
+// Nothing is reflected.
+bool is_dark()
+{
+    return (MATERIAL.bits.y & (RD_GPU_UNLIT | RD_GPU_ADDITIVE)) != 0u;
+}
+
 hdrp_brdf_data black(Surface s)
 {
     hdrp_brdf_surface b = hdrp_brdf_surface_default();
@@ -45,7 +51,7 @@ vec3 emission_nits(Surface s)
 hdrp_brdf_data engine_data(Surface s)
 {
     hdrp_brdf_surface b = s.brdf;
-    if (is_unlit()) {
+    if (is_dark()) {
         return black(s);
     }
     b.features &= frame.bits.y;

@@ -38,12 +38,16 @@ float light_shadow(uint shadow_index, vec3 position, vec3 normal, vec3 l, float 
 
 layout(location = 0) flat in uint triangle;
 
-hdrp_lit_surface lit_surface(Surface s, hdrp_brdf_data data)
+hdrp_lit_surface lit_surface_at(Surface s, hdrp_brdf_data data, uvec2 pixel)
 {
-    uvec2 pixel = uvec2(gl_FragCoord.xy);
     vec3 offset = s.position - frame.eye_step.xyz;
     uint tile = hdrp_cull_tile_of_pixel(lighting.grid, pixel.x, pixel.y);
     shadow_normal = s.geometric_normal;
     float z_view = dot(offset, frame.forward_orthographic.xyz);
     return hdrp_light_surface(data, offset, pixel, tile, z_view, s.light_layers, 1.0);
+}
+
+hdrp_lit_surface lit_surface(Surface s, hdrp_brdf_data data)
+{
+    return lit_surface_at(s, data, uvec2(gl_FragCoord.xy));
 }

@@ -11,6 +11,6 @@ void main()
     Surface s = surface_at(draw.mesh, triangle, pixel_ray(gl_FragCoord.xy));
     hdrp_lit_surface lit = lit_surface(s, engine_data(s));
     vec3 light = (lit.diffuse + lit.specular + emission_nits(s)) * frame.depths_exposure.z;
-    color = vec4(light * s.alpha, s.alpha);
-    through = vec4(vec3(1.0 - s.alpha) + lit.transmitted_weight * s.alpha, 1.0 - s.alpha);
+    color = vec4(light * s.alpha, s.coverage);
+    through = vec4(vec3(1.0 - s.coverage) + lit.transmitted_weight * s.coverage, 1.0 - s.coverage);
 }

@@ -13,17 +13,16 @@ vec3 normalized_derivative(vec3 d, vec3 change)
     return (change - unit * dot(unit, change)) / size;
 }
 
-// Through the sample of a pixel.
-Ray pixel_ray(vec2 pixel)
+// Through a place in the picture, for a sample of some pixels.
+Ray sample_ray(vec2 at, float pixels)
 {
-    vec2 at = floor(pixel) + frame.jitter_size.xy;
     vec2 s = vec2(2.0 * at.x / frame.jitter_size.z - 1.0, 1.0 - 2.0 * at.y / frame.jitter_size.w);
     vec3 right = frame.right_half_width.xyz * frame.right_half_width.w;
     vec3 up = frame.up_half_height.xyz * frame.up_half_height.w;
     vec3 on_plane = right * s.x + up * s.y;
     vec3 forward = frame.forward_orthographic.xyz;
-    vec3 dx = right * (2.0 / frame.jitter_size.z) * frame.eye_step.w;
-    vec3 dy = -up * (2.0 / frame.jitter_size.w) * frame.eye_step.w;
+    vec3 dx = right * (2.0 / frame.jitter_size.z) * (frame.eye_step.w * pixels);
+    vec3 dy = -up * (2.0 / frame.jitter_size.w) * (frame.eye_step.w * pixels);
     Ray r;
     if (is_orthographic()) {
         r.origin = frame.eye_step.xyz + on_plane;
@@ -39,4 +38,10 @@ Ray pixel_ray(vec2 pixel)
         r.direction_dy = normalized_derivative(forward + on_plane, dy);
     }
     return r;
+}
+
+// Through the sample of a pixel.
+Ray pixel_ray(vec2 pixel)
+{
+    return sample_ray(floor(pixel) + frame.jitter_size.xy, 1.0);
 }

@@ -59,6 +59,7 @@ layout(push_constant) uniform Draw {
     uint mesh;
     uint ordered; // 1: triangles are those of the order
     uint view;    // of a shadow map
+    uint low;     // 1: into targets of half the resolution
 } draw;
 
 vec2 fetch2(uint first, uint i)

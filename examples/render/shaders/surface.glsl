@@ -14,6 +14,7 @@ struct Surface {
     float distance_m;
     vec3 emission_nits;
     float alpha;
+    float coverage; // alpha, or 0 where only light is added
     bool back_face;
     uint light_layers;
     float map_variance;
@@ -331,6 +332,7 @@ Surface set_base(Surface s)
     s.alpha = MATERIAL.bits.x == RD_GPU_ALPHA_BLEND
                   ? hdrp_saturate(MATERIAL.base_alpha.w * base.w)
                   : 1.0;
+    s.coverage = (MATERIAL.bits.y & RD_GPU_ADDITIVE) != 0u ? 0.0 : s.alpha;
     s.brdf.metallic = MATERIAL.surface.x * mr.z;
     s.brdf.perceptual_roughness = MATERIAL.surface.y * mr.y;
     s.emission_nits = MATERIAL.emission_cutoff.xyz * emission.xyz;
