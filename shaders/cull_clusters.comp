@@ -52,7 +52,8 @@ uint collect(uint batch, bool limited)
 {
     uint end = min((batch + 1u) * BATCH, candidate_count);
     uint n = 0u;
-    for (uint from = batch * BATCH; from < end; from += GROUP) {
+    uint from = batch * BATCH;
+    do {
         uint candidate = from + gl_LocalInvocationIndex;
         uint hit, total;
         bool found = candidate < end && ask(candidate, hit);
@@ -65,7 +66,8 @@ uint collect(uint batch, bool limited)
             hits[at] = hit;
         }
         n += total;
-    }
+        from += GROUP;
+    } while (from < end);
     wait_for_group();
     return n;
 }
@@ -139,9 +141,13 @@ void count_slices(uint n)
     uint end = end_slice();
     for (uint h = 0u; h < n; ++h) {
         uint hit = hits[h];
-        for (uint k = begin_in(first, hit); k < end_in(end, hit); ++k) {
-            counts[k] = one_more(counts[k], hit >> 10 & 3u);
-        }
+        uint k = begin_in(first, hit);
+        uint last = end_in(end, hit);
+        do {
+            if (k < last) {
+                counts[k] = one_more(counts[k], hit >> 10 & 3u);
+            }
+        } while (++k < last);
     }
 }
 
@@ -166,9 +172,13 @@ void write_entries(uint batch, uint n)
     uint end = end_slice();
     for (uint h = 0u; h < n; ++h) {
         uint hit = hits[h];
-        for (uint k = begin_in(first, hit); k < end_in(end, hit); ++k) {
-            entries[counts[k].x++] = candidate_of(batch, hit) | 0xffff0000u;
-        }
+        uint k = begin_in(first, hit);
+        uint last = end_in(end, hit);
+        do {
+            if (k < last) {
+                entries[counts[k].x++] = candidate_of(batch, hit) | 0xffff0000u;
+            }
+        } while (++k < last);
     }
 }
 
@@ -217,11 +227,8 @@ void main()
     }
     begin_room();
     wait_for_group();
-    for (int phase = PHASE_MEASURE; phase <= PHASE_WRITE; ++phase) {
-        if (phase == PHASE_LEVEL) {
-            limited = needed > frame.grid.cells.y;
-            phase = limited ? phase : PHASE_COUNT;
-        }
+    int phase = PHASE_MEASURE;
+    do { // asks at its end, as the loop inside does: see group.glsl
         bool level = phase >= PHASE_LEVEL && phase < PHASE_COUNT;
         bool is_new = phase == PHASE_MEASURE || batches > 1u || (limited && phase == PHASE_COUNT);
         if (level) {
@@ -234,7 +241,8 @@ void main()
             dropped = 0u;
         }
         wait_for_group();
-        for (uint b = 0u; b < batches; ++b) {
+        uint b = 0u;
+        do {
             if (is_new) {
                 n = collect(b, limited && phase >= PHASE_COUNT);
             }
@@ -248,9 +256,14 @@ void main()
                 write_entries(b, n);
             }
             wait_for_group();
-        }
+        } while (++b < batches);
         if (level) {
             end_level(phase - PHASE_LEVEL);
         }
-    }
+        ++phase;
+        if (phase == PHASE_LEVEL) {
+            limited = needed > frame.grid.cells.y;
+            phase = limited ? phase : PHASE_COUNT;
+        }
+    } while (phase <= PHASE_WRITE);
 }

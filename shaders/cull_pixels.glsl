@@ -54,8 +54,9 @@ void begin_pixels(uvec2 begin)
 
 void read_pixels()
 {
-    for (uint p = gl_LocalInvocationIndex; p < HDRP_CULL_BLOCK_COUNT * pixels_of_block();
-         p += GROUP) {
+    uint p = gl_LocalInvocationIndex;
+    uint end = HDRP_CULL_BLOCK_COUNT * pixels_of_block();
+    do {
         uvec2 in_tile = pixel_at(p);
         uvec2 at = tile_begin + in_tile;
         float z = -1.0;
@@ -65,19 +66,24 @@ void read_pixels()
             z = frame.picture.w != 0u ? hdrp_view_depth(frame.device, texel) : texel;
             z = hdrp_cull_opaque_depth(z, frame.pixel.z, frame.pixel.w);
         }
-        pixel_z[p] = z;
-    }
+        if (p < end) {
+            pixel_z[p] = z;
+        }
+        p += GROUP;
+    } while (p < end);
     wait_for_group();
     hdrp_v2 size = hdrp_v2(frame.pixel.x * float(frame.grid.cells.z),
                            frame.pixel.y * float(frame.grid.cells.w));
     for (uint b = gl_LocalInvocationIndex; b < HDRP_CULL_BLOCK_COUNT; b += GROUP) {
         float nearest = HDRP_FLT_MAX;
         float farthest = -1.0;
-        for (uint k = 0u; k < pixels_of_block(); ++k) {
-            float z = pixel_z[b * pixels_of_block() + k];
+        uint k = b * pixels_of_block();
+        uint last = k + pixels_of_block();
+        do {
+            float z = pixel_z[k];
             nearest = z >= 0.0 && z < nearest ? z : nearest;
             farthest = z > farthest ? z : farthest;
-        }
+        } while (++k < last);
         block_boxes[b] = hdrp_cull_block_box(window.tile.window, size, b,
                                              hdrp_cull_interval(nearest, farthest),
                                              frame.camera.forward_orthographic.w);
@@ -135,8 +141,10 @@ void ask_boxes(uint hit)
     if (has_masks) {
         fill_mask(hit, 0u);
     }
-    for (uint b = 0u; b < HDRP_CULL_BLOCK_COUNT; ++b) {
-        reached |= hdrp_cull_box_in_ball(block_boxes[b], s.ball) << b;
+    [[dont_unroll]] for (uint row = 0u; row < HDRP_CULL_BLOCK_COUNT; row += 4u) {
+        for (uint b = row; b < row + 4u; ++b) {
+            reached |= hdrp_cull_box_in_ball(block_boxes[b], s.ball) << b;
+        }
     }
     uint inside = ball ? reached >> 16 : 0u; // inside its ball is inside a shape only if it is one
     for (uint b = 0u; has_masks && b < HDRP_CULL_BLOCK_COUNT; ++b) {
@@ -160,10 +168,12 @@ void ask_pixel(uint hit, hdrp_cull_shape shape, uint block, uint k)
     }
 }
 
-// A thread asks its pixels about a hit. As many blocks at once as there are threads for.
+// A thread asks its pixels about a hit, of which some block is undecided. As many blocks at once as
+// there are threads for.
 void ask_own_pixels(uint hit)
 {
     hdrp_cull_shape shape = shapes[hits[hit]];
+    bool one_is_enough = (frame.picture.z & (FLAG_BLOCKS | FLAG_MASKS)) == 0u;
     uint of_block = pixels_of_block();
     uint at_once = clamp(GROUP / of_block, 1u, HDRP_CULL_BLOCK_COUNT);
     uint step = at_once > 1u ? of_block : GROUP;
@@ -171,17 +181,24 @@ void ask_own_pixels(uint hit)
     uint own_pixel = at_once > 1u ? gl_LocalInvocationIndex % of_block : gl_LocalInvocationIndex;
     own_block = at_once > 1u ? own_block : 0u;
     uint rest = undecided[hit];
-    while (rest != 0u) {
+    do {
         uint first = uint(findLSB(rest)) / at_once * at_once;
         uint block = first + own_block;
         if (own_block < at_once && (rest >> block & 1u) != 0u) {
-            for (uint k = own_pixel; k < of_block; k += 2u * step) { // few turns: see group.glsl
+            uint k = own_pixel;
+            do { // few turns: see group.glsl
                 ask_pixel(hit, shape, block, k);
                 ask_pixel(hit, shape, block, k + step);
-            }
+                k += 2u * step;
+            } while (k < of_block);
         }
         rest &= ~(((1u << at_once) - 1u) << first);
-    }
+        if (one_is_enough) {
+            wait_for_group();
+            rest = blocks[hit] != 0u ? 0u : rest;
+            wait_for_group();
+        }
+    } while (rest != 0u);
 }
 
 // The blocks of the hits of a chunk.
@@ -217,11 +234,12 @@ void ask_pixels(uint n)
         ask_boxes(thread);
     }
     wait_for_group();
-    for (uint h = 0u; h < n; ++h) {
-        if (undecided[h] != 0u) {
+    uint h = 0u;
+    do {
+        if (h < n && undecided[h] != 0u) {
             ask_own_pixels(h);
         }
-    }
+    } while (++h < n);
     wait_for_group();
     if (!all && thread < n && blocks[thread] != 0u) {
         blocks[thread] = 0xffffu;

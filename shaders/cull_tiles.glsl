@@ -128,11 +128,9 @@ void main()
     begin_pixels(begin);
 #endif
     begin_room();
-    for (int phase = PHASE_WRITE; phase <= PHASE_AGAIN; ++phase) {
+    int phase = PHASE_WRITE;
+    do { // asks at its end, as the loop inside does: see group.glsl
         bool level = phase >= PHASE_LEVEL && phase < PHASE_AGAIN;
-        if (phase == PHASE_LEVEL && written <= frame.grid.cells.y) {
-            break;
-        }
         if (level) {
             begin_level();
         } else {
@@ -142,24 +140,30 @@ void main()
                 category_counts[gl_LocalInvocationIndex] = 0u;
             }
         }
-        for (uint from = 0u; from < candidate_count; from += GROUP) {
+        uint from = 0u;
+        do {
             if (level) {
                 add_digits(from, phase - PHASE_LEVEL);
-                continue;
+            } else {
+                uint n = collect(from, phase == PHASE_AGAIN);
+                if (phase == PHASE_WRITE) {
+                    note_hits(n, from);
+                }
+                written += write(n, written);
+                wait_for_group();
             }
-            uint n = collect(from, phase == PHASE_AGAIN);
-            if (phase == PHASE_WRITE) {
-                note_hits(n, from);
-            }
-            written += write(n, written);
-            wait_for_group();
-        }
+            from += GROUP;
+        } while (from < candidate_count);
         memoryBarrierBuffer(); // of the bits of hits
         wait_for_group();
         if (level) {
             end_level(phase - PHASE_LEVEL);
         }
-    }
+        ++phase;
+        if (phase == PHASE_LEVEL && written <= frame.grid.cells.y) {
+            phase = PHASE_AGAIN + 1;
+        }
+    } while (phase <= PHASE_AGAIN);
     wait_for_group();
     uint missed = max(all, written) - written;
     if (gl_LocalInvocationIndex == 0u) {

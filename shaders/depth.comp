@@ -39,15 +39,21 @@ void main()
     uint across = min(size.x, GROUP);
     uint rows = GROUP / across;
     uvec2 own = uvec2(gl_LocalInvocationIndex % across, gl_LocalInvocationIndex / across);
-    for (uint y = own.y; own.y < rows && y < size.y; y += rows) {
-        for (uint x = own.x; x < size.x; x += across) {
-            float texel = texelFetch(depths, ivec2(begin + uvec2(x, y)), 0).x;
-            float z = picture.z != 0u ? hdrp_view_depth(device, texel) : texel;
-            z = hdrp_cull_opaque_depth(z, limits.x, limits.y);
-            nearest = z >= 0.0 && z < nearest ? z : nearest;
-            farthest = z > farthest ? z : farthest;
-        }
-    }
+    uint y = own.y;
+    do { // asks at its end, as the loop inside does: see group.glsl
+        uint x = own.x;
+        do {
+            if (own.y < rows && x < size.x && y < size.y) {
+                float texel = texelFetch(depths, ivec2(begin + uvec2(x, y)), 0).x;
+                float z = picture.z != 0u ? hdrp_view_depth(device, texel) : texel;
+                z = hdrp_cull_opaque_depth(z, limits.x, limits.y);
+                nearest = z >= 0.0 && z < nearest ? z : nearest;
+                farthest = z > farthest ? z : farthest;
+            }
+            x += across;
+        } while (x < size.x);
+        y += rows;
+    } while (y < size.y);
     if (farthest >= 0.0) { // an opaque depth is above 0, so that 0 is left for sky
         atomicMin(nearest_bits, hdrp_bits_from_f32(nearest));
         atomicMax(farthest_bits, hdrp_bits_from_f32(farthest));

@@ -2,7 +2,9 @@
 // runs in step: it needs no barriers, which a device without hardware for them takes long for.
 //
 // Mesa's lavapipe, to Mesa 22 at least, leaves the loops of a thread after 65535 turns of all of them
-// together, so that loops here are kept short where they can be.
+// together, so that loops here are kept short where they can be. It jumps only at the end of a loop:
+// what is behind a condition that is not met costs its time, and a loop that asks at its beginning
+// one more turn. So loops that do much ask at their end. Other devices do not mind.
 #extension GL_KHR_shader_subgroup_basic : require
 
 #define GROUP_MAX 64

@@ -197,7 +197,7 @@ static studio* open_street(void)
 {
     studio* s = open_studio();
     rd_lighting_desc d = {&s->scene, NULL, &s->environment, &s->options};
-    assert_true(rd_scene_build_lights(&s->scene, &s->report));
+    assert_true(rd_scene_build(&s->scene, RD_BUILTIN_LIGHTS, &s->report));
     s->trace = rd_trace_build(&s->scene, &s->report);
     assert_non_null(s->trace);
     d.trace = s->trace;
