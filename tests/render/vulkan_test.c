@@ -248,8 +248,8 @@ static bool compare(const studio* s, const layer* layers, const float* cpu, cons
     rd_compare(gpu, cpu, r->width, r->height, exposure, &d);
     printf("%zu pixels, %zu more at edges: relative RMSE %.4f %%, over a tenth %.4f %%, mean %.5f, "
            "PSNR of all %.2f dB\n",
-           n, edges, 100.0 * sqrt(square / (double)n), 100.0 * (double)wrong / (double)n,
-           gpu_sum / cpu_sum, d.psnr_db);
+           n, edges, 100.0 * sqrt(square / (double)(n ? n : 1u)),
+           100.0 * (double)wrong / (double)(n ? n : 1u), n ? gpu_sum / cpu_sum : 1.0, d.psnr_db);
     if (n == 0) {
         return edges > 0 && most.thin_db > 0.0 && d.psnr_db >= most.thin_db;
     }
