@@ -549,10 +549,11 @@ HDRP_FN float hdrp_i_oit_absorbed(float alpha)
     return -0.69314718f * hdrp_log2(hdrp_clamp(1.0f - alpha, 1.52587890625e-5f, 1.0f));
 }
 
-/* What the nearest fragments absorb before a place: all of it, or half of the others. */
+/* What the nearest fragments absorb before a place: all of it, or half of the others. Limited, as
+ * many at one depth would all be hidden, and their weights vanish in half floats. */
 HDRP_FN float hdrp_i_oit_front(float front, float own, hdrp_oit_place p)
 {
-    float others = 0.5f * p.front * hdrp_max(front - own, 0.0f);
+    float others = p.front * hdrp_clamp(0.5f * (front - own), 0.0f, 4.0f);
     return hdrp_max(front, 0.0f) * p.behind + others;
 }
 
