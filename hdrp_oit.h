@@ -549,10 +549,11 @@ HDRP_FN float hdrp_i_oit_absorbed(float alpha)
     return -0.69314718f * hdrp_log2(hdrp_clamp(1.0f - alpha, 1.52587890625e-5f, 1.0f));
 }
 
-/* What the nearest fragments absorb before a place: all of it, or half of the others. */
+/* What the nearest fragments absorb before a place: all of it, or half of the others. Limited, as
+ * many at one depth would all be hidden, and their weights vanish in half floats. */
 HDRP_FN float hdrp_i_oit_front(float front, float own, hdrp_oit_place p)
 {
-    float others = 0.5f * p.front * hdrp_max(front - own, 0.0f);
+    float others = p.front * hdrp_clamp(0.5f * (front - own), 0.0f, 4.0f);
     return hdrp_max(front, 0.0f) * p.behind + others;
 }
 
@@ -823,8 +824,8 @@ HDRP_FN float hdrp_i_oit_before_4(hdrp_v4 m, float x, float own)
     return hdrp_saturate(f + xa * (m.x - x) + xab * (m.y - (x + a) * m.x + x * a));
 }
 
-/* The roots of c0 + c1 t + c2 t^2 + c3 t^3, three real ones. */
-HDRP_FN hdrp_v3 hdrp_i_oit_cubic(float c0, float c1, float c2, float c3)
+/* The roots of c0 + c1 t + c2 t^2 + c3 t^3, three real ones, of which none is far off. */
+HDRP_FN hdrp_v3 hdrp_i_oit_near_roots(float c0, float c1, float c2, float c3)
 {
     float s = hdrp_i_oit_ratio(c2, c3) * 0.333333333f;
     float q = hdrp_i_oit_ratio(c1, c3) * 0.333333333f;
@@ -838,6 +839,18 @@ HDRP_FN hdrp_v3 hdrp_i_oit_cubic(float c0, float c1, float c2, float c3)
     float c = r * e.cosine;
     float d = 1.73205081f * r * e.sine;
     return hdrp_v3_make(-c - d - s, d - c - s, 2.0f * c - s);
+}
+
+/* The same roots wherever they are. One that is far off leaves no digits to the others, so that
+ * their reciprocals are looked for where c3 is small. */
+HDRP_FN hdrp_v3 hdrp_i_oit_cubic(float c0, float c1, float c2, float c3)
+{
+    float turned = hdrp_abs(c3) < hdrp_abs(c0) ? 1.0f : 0.0f;
+    hdrp_v3 r = hdrp_i_oit_near_roots(turned > 0.0f ? c3 : c0, turned > 0.0f ? c2 : c1,
+                                      turned > 0.0f ? c1 : c2, turned > 0.0f ? c0 : c3);
+    return hdrp_v3_make(turned > 0.0f ? hdrp_i_oit_ratio(1.0f, r.x) : r.x,
+                        turned > 0.0f ? hdrp_i_oit_ratio(1.0f, r.y) : r.y,
+                        turned > 0.0f ? hdrp_i_oit_ratio(1.0f, r.z) : r.z);
 }
 
 /* Newton's polynomial through f at x and the steps at three roots, in its mean. */

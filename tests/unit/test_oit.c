@@ -264,6 +264,27 @@ static void layers_at_one_depth_share(void** state)
     }
 }
 
+/* Sprites that face the camera around one point: none of them hides all others. */
+static void many_layers_at_one_depth_stay_visible(void** state)
+{
+    const float alphas[4] = {0.5f, 0.9f, 0.99f, 1.0f};
+    hdrp_oit_fragment f[64];
+    (void)state;
+    for (int m = HDRP_OIT_MODE_WAVELET; m <= HDRP_OIT_MODE_MOMENTS_4; ++m) {
+        for (int i = 0; i < 4; ++i) {
+            for (int k = 0; k < 64; ++k) {
+                f[k] = fragment(v3(1, 0.5f, 0), v3(0, 0, 0), alphas[i], 3.0f);
+            }
+            for (size_t n = 1; n <= 64; ++n) {
+                float covered = 1.0f - powf(1.0f - alphas[i], (float)n);
+                hdrp_v3 c =
+                    color_of(f, n, v3(0, 0, 0), (hdrp_oit_mode)m, HDRP_OIT_PRECISION_NATIVE);
+                assert_color(c, v3(covered, 0.5f * covered, 0.0f), 4e-3);
+            }
+        }
+    }
+}
+
 static void emission_is_seen_through_what_is_before_it(void** state)
 {
     const hdrp_oit_fragment glass = fragment(v3(0, 0, 0), v3(0, 0, 0), 0.75f, 5.0f);
@@ -677,6 +698,7 @@ int main(void)
         cmocka_unit_test(order_changes_no_more_than_rounding),
         cmocka_unit_test(two_layers_are_exact_in_the_better_modes),
         cmocka_unit_test(layers_at_one_depth_share),
+        cmocka_unit_test(many_layers_at_one_depth_stay_visible),
         cmocka_unit_test(emission_is_seen_through_what_is_before_it),
         cmocka_unit_test(transmittance_never_leaves_its_range),
         cmocka_unit_test(moments_are_powers_of_the_place),

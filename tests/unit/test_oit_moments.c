@@ -18,7 +18,6 @@
 #define LAYERS    12
 #define POWERS    7 /* 0 to 6 */
 #define UNKNOWNS  4
-#define PIXELS    400
 #define NEAREST_M 1.0f
 #define RANGE     16.0f
 
@@ -150,11 +149,11 @@ static pixel random_pixel(void)
 }
 
 /* Largest and mean error of the transmittance of all fragments but the nearest. */
-static void measure(int count, double* largest, double* mean)
+static void measure(int count, int pixels, double* largest, double* mean)
 {
     *largest = 0;
     *mean = 0;
-    for (int i = 0; i < PIXELS; ++i) {
+    for (int i = 0; i < pixels; ++i) {
         pixel p = random_pixel();
         double b[POWERS];
         for (int k = 0; k < POWERS; ++k) {
@@ -168,7 +167,7 @@ static void measure(int count, double* largest, double* mean)
             float got = hdrp_oit_moments_transmittance(p.sums, p.f[k], p.place[k], (hdrp_u32)count);
             double error = fabs((double)got - through);
             *largest = error <= *largest ? *largest : error;
-            *mean += error / (PIXELS * (LAYERS - 1));
+            *mean += error / (pixels * (LAYERS - 1));
         }
     }
 }
@@ -177,7 +176,7 @@ static void four_moments_solve_the_moment_problem(void** state)
 {
     double largest, mean;
     (void)state;
-    measure(4, &largest, &mean);
+    measure(4, 400, &largest, &mean);
     assert_true(largest <= 4e-6 && mean <= 1.5e-7);
 }
 
@@ -185,8 +184,9 @@ static void six_moments_solve_the_moment_problem(void** state)
 {
     double largest, mean;
     (void)state;
-    measure(6, &largest, &mean);
-    assert_true(largest <= 2e-4 && mean <= 2e-6);
+    /* So many that some fragments are where one root of the polynomial is far off. */
+    measure(6, 2000, &largest, &mean);
+    assert_true(largest <= 4e-4 && mean <= 2e-6);
 }
 
 static void the_nearest_is_seen_whole(void** state)
