@@ -328,8 +328,9 @@ static VkResult hdrp_i_gpu_vk_sampler(hdrp_gpu_vk* gpu)
 }
 
 /* Threads of a group: a subgroup, where all subgroups have one size, so that it runs in step. What
- * Vulkan promises of full subgroups only with a feature, devices of one size do anyway. */
-static void hdrp_i_gpu_vk_choose_group(hdrp_gpu_vk* gpu)
+ * Vulkan promises of full subgroups only with a feature, devices of one size do anyway. Those of
+ * Vulkan 1.3 can be asked for sizes; to others the structure may mean nothing. */
+static void hdrp_i_gpu_vk_choose_group(hdrp_gpu_vk* gpu, uint32_t version)
 {
     VkPhysicalDeviceSubgroupSizeControlPropertiesEXT sizes;
     VkPhysicalDeviceProperties2 all;
@@ -338,7 +339,9 @@ static void hdrp_i_gpu_vk_choose_group(hdrp_gpu_vk* gpu)
     memset(&all, 0, sizeof all);
     all.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
     all.pNext = &sizes;
-    gpu->vk.GetPhysicalDeviceProperties2(gpu->desc.physical_device, &all);
+    if (version >= VK_MAKE_VERSION(1, 3, 0)) {
+        gpu->vk.GetPhysicalDeviceProperties2(gpu->desc.physical_device, &all);
+    }
     gpu->group = HDRP_I_GPU_VK_GROUP_MAX;
     gpu->one_subgroup = 0u;
     if (sizes.minSubgroupSize == sizes.maxSubgroupSize && sizes.minSubgroupSize >= 4u &&
@@ -426,7 +429,7 @@ HDRP_API hdrp_result hdrp_gpu_vk_init(hdrp_gpu_vk* gpu, const hdrp_gpu_vk_desc* 
     made.buffer_alignment = properties.limits.minStorageBufferOffsetAlignment;
     made.groups_max = properties.limits.maxComputeWorkGroupCount[0];
     made.vk.GetPhysicalDeviceMemoryProperties(desc->physical_device, &made.memory_types);
-    hdrp_i_gpu_vk_choose_group(&made);
+    hdrp_i_gpu_vk_choose_group(&made, properties.apiVersion);
     made.shader_stages = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;
     if (hdrp_i_gpu_vk_queue_flags(&made.vk, desc) & VK_QUEUE_GRAPHICS_BIT) {
         made.shader_stages |= VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT;

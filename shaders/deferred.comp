@@ -32,7 +32,7 @@ layout(binding = 20) uniform writeonly image2D color;
 layout(binding = 21) uniform writeonly image2D diffuse;
 layout(std430, binding = 22) readonly buffer List { uint list[]; };
 layout(std430, binding = 23) readonly buffer Arguments { uvec4 arguments[]; };
-layout(push_constant) uniform Push { uvec4 push; }; // x index of the variant
+layout(push_constant) uniform Push { uvec4 push; }; // x index of the variant, y variants
 
 #include "lit_pixels.glsl"
 
@@ -110,7 +110,12 @@ void light_pixel(uvec2 pixel, uint tile)
 
 void main()
 {
-    uint id = list[arguments[push.x].w + gl_WorkGroupID.x];
+    uint last = push.x + 1u < push.y ? arguments[push.x + 1u].w : arguments[HDRP_CULL_VARIANT_MAX].x;
+    uint own = arguments[push.x].w + gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    if (own >= last) { // of a row that is not full
+        return;
+    }
+    uint id = list[own];
     uvec2 at = uvec2(hdrp_cull_tile_id_x(id), hdrp_cull_tile_id_y(id));
     uvec2 begin = at * lighting.grid.tiles.xy;
     uvec2 end = min(begin + lighting.grid.tiles.xy, lighting.picture.xy);

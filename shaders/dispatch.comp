@@ -13,7 +13,8 @@ layout(local_size_x = 256) in;
 layout(std430, binding = 0) readonly buffer Chosen { uint chosen[]; };
 layout(std430, binding = 1) writeonly buffer List { uint list[]; };
 layout(std430, binding = 2) writeonly buffer Arguments { uvec4 arguments[]; };
-layout(push_constant) uniform Push { uvec4 push; }; // x variants, y columns, z tiles, w results at
+// x variants, y columns, z tiles, w groups side by side at most
+layout(push_constant) uniform Push { uvec4 push; };
 
 shared uint before; // tiles of earlier variants; of no variant: without features
 shared uint own;    // tiles of this one; of no variant: not covered
@@ -77,12 +78,14 @@ void main()
     barrier();
     if (variant == push.x) {
         if (gl_LocalInvocationID.x == 0u) {
-            arguments[push.w] = uvec4(push.z - before - own, before, own, 0u);
+            arguments[HDRP_CULL_VARIANT_MAX] = uvec4(push.z - before - own, before, own, 0u);
         }
         return;
     }
     if (gl_LocalInvocationID.x == 0u) {
-        arguments[variant] = uvec4(own, 1u, 1u, before);
+        // Groups in rows, of which the last may have some too many.
+        arguments[variant] = uvec4(min(own, push.w), max((own + push.w - 1u) / push.w, 1u), 1u,
+                                   before);
     }
     list_tiles(variant, before);
 }

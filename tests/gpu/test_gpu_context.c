@@ -21,6 +21,8 @@ static struct {
     VkPipelineCache cache;                   /* likewise, calls that make pipelines */
     uint32_t storage_buffers;                /* limit of descriptors in a stage; 0: the device's */
     uint32_t threads, shared_bytes;          /* limits of a group; 0: the device's */
+    uint32_t version;                        /* of Vulkan; 0: the device's */
+    int sizes_asked;                         /* of subgroups */
     const char* hidden;                      /* a function that the driver has not */
     int names;                               /* of objects, for debuggers */
 } driver;
@@ -181,6 +183,17 @@ static VKAPI_ATTR void VKAPI_CALL my_vkGetPhysicalDeviceProperties(VkPhysicalDev
     if (driver.shared_bytes) {
         p->limits.maxComputeSharedMemorySize = driver.shared_bytes;
     }
+    if (driver.version) {
+        p->apiVersion = driver.version;
+    }
+}
+
+/* What an older device would say is no affair of this: it must not be asked. */
+static VKAPI_ATTR void VKAPI_CALL my_vkGetPhysicalDeviceProperties2(VkPhysicalDevice physical,
+                                                                    VkPhysicalDeviceProperties2* p)
+{
+    ++driver.sizes_asked;
+    vkGetPhysicalDeviceProperties2(physical, p);
 }
 
 static PFN_vkVoidFunction VKAPI_CALL my_vkGetInstanceProcAddr(VkInstance instance, const char* name)
@@ -193,6 +206,9 @@ static PFN_vkVoidFunction VKAPI_CALL my_vkGetInstanceProcAddr(VkInstance instanc
     }
     if (strcmp(name, "vkGetPhysicalDeviceProperties") == 0) {
         return (PFN_vkVoidFunction)my_vkGetPhysicalDeviceProperties;
+    }
+    if (strcmp(name, "vkGetPhysicalDeviceProperties2") == 0) {
+        return (PFN_vkVoidFunction)my_vkGetPhysicalDeviceProperties2;
     }
     if (strcmp(name, "vkSetDebugUtilsObjectNameEXT") == 0) {
         return (PFN_vkVoidFunction)my_vkSetDebugUtilsObjectNameEXT;
@@ -258,6 +274,13 @@ static void what_is_missing_has_a_name(void** state)
     expect_missing(&desc, "maxPerStageDescriptorStorageBuffers");
     desc.passes = HDRP_GPU_VK_PASS_DEPTH;
     assert_null(hdrp_gpu_vk_missing(&desc, 0));
+    driver.storage_buffers = 11; /* lighting needs more, for blockers */
+    desc.passes = HDRP_GPU_VK_PASS_LISTS;
+    assert_null(hdrp_gpu_vk_missing(&desc, 0));
+    desc.passes = HDRP_GPU_VK_PASS_LIGHT;
+    expect_missing(&desc, "maxPerStageDescriptorStorageBuffers");
+    driver.storage_buffers = 12;
+    assert_null(hdrp_gpu_vk_missing(&desc, 0));
     desc.passes = 0;
     driver.storage_buffers = 0;
     driver.threads = 128; /* as few as Vulkan allows: lighting needs more, the others do not */
@@ -281,6 +304,27 @@ static void what_is_missing_has_a_name(void** state)
     for (size_t i = 0; i < sizeof gpu; ++i) {
         assert_int_equal(((unsigned char*)&gpu)[i], 0x5a);
     }
+}
+
+/* Their sizes decide how many threads build lists. */
+static void subgroups_of_old_devices_are_not_asked_for(void** state)
+{
+    hdrp_gpu_vk_desc desc = failing_desc();
+    VkPhysicalDeviceProperties properties;
+    hdrp_gpu_vk gpu;
+    (void)state;
+    desc.passes = HDRP_GPU_VK_PASS_DEPTH;
+    driver.version = VK_API_VERSION_1_2;
+    assert_int_equal(hdrp_gpu_vk_init(&gpu, &desc), HDRP_OK);
+    assert_int_equal(driver.sizes_asked, 0);
+    assert_int_equal(gpu.group, 64);
+    assert_int_equal(gpu.one_subgroup, 0);
+    hdrp_gpu_vk_destroy(&gpu);
+    driver.version = 0;
+    vkGetPhysicalDeviceProperties(device.physical, &properties);
+    assert_int_equal(hdrp_gpu_vk_init(&gpu, &desc), HDRP_OK);
+    assert_int_equal(driver.sizes_asked, properties.apiVersion >= VK_API_VERSION_1_3);
+    hdrp_gpu_vk_destroy(&gpu);
 }
 
 static void descs_out_of_range_are_refused(void** state)
@@ -853,6 +897,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST(what_is_missing_has_a_name),
+        TEST(subgroups_of_old_devices_are_not_asked_for),
         TEST(descs_out_of_range_are_refused),
         TEST(passes_that_are_not_asked_for_are_not_made),
         TEST(no_context_that_fails_leaves_anything),

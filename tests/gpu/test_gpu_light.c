@@ -1185,6 +1185,20 @@ static void pixels_are_lit_as_on_the_cpu(void** state)
     hdrp_gpu_vk_variants_destroy(&gpu, &variants);
 }
 
+/* As on a device that takes few groups side by side: rows of them light what is left. */
+static void more_tiles_than_a_row_of_groups_are_lit(void** state)
+{
+    const uint32_t words[] = {FRAME | 0xcu, HDRP_GPU_VK_WORD_ALL};
+    const scene_desc desc = {.width = 75, .height = 50, .tile = 8, .lights = 30, .materials = 16u};
+    hdrp_gpu_vk_variants variants = make_variants(words, 2);
+    uint32_t groups_max = gpu.groups_max;
+    (void)state;
+    gpu.groups_max = 7u;
+    expect_lit("rows of 7 groups", &desc, &variants);
+    gpu.groups_max = groups_max;
+    hdrp_gpu_vk_variants_destroy(&gpu, &variants);
+}
+
 /* Light that is written apart, and what is left, make what is written together. */
 static void parts_sum_up(void** state)
 {
@@ -1355,9 +1369,9 @@ static void what_cannot_be_lit_is_refused(void** state)
     assert_int_equal(hdrp_gpu_vk_tiles_create(&gpu, grid, &tiles), HDRP_ERROR_BAD_ARGUMENT);
     assert_int_equal(hdrp_gpu_vk_tiles_create(NULL, grid, &tiles), HDRP_ERROR_NULL_POINTER);
     assert_int_equal(hdrp_gpu_vk_tiles_create(&gpu, grid, NULL), HDRP_ERROR_NULL_POINTER);
-    small.groups_max = s.lists.grid.tiles.z * s.lists.grid.tiles.w - 1u; /* groups of a dispatch */
+    small.buffer_range_max = 4u * s.lists.grid.tiles.z * s.lists.grid.tiles.w - 1u;
     assert_int_equal(hdrp_gpu_vk_tiles_create(&small, s.lists.grid, &tiles), HDRP_ERROR_TOO_LARGE);
-    ++small.groups_max;
+    ++small.buffer_range_max;
     assert_int_equal(hdrp_gpu_vk_tiles_create(&small, s.lists.grid, &tiles), HDRP_OK);
     hdrp_gpu_vk_tiles_destroy(&gpu, &tiles);
     hdrp_gpu_vk_variants_destroy(&gpu, NULL);
@@ -1428,6 +1442,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(tiles_are_classified_as_on_the_cpu, set_up, tear_down),
         cmocka_unit_test_setup_teardown(pixels_are_lit_as_on_the_cpu, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(more_tiles_than_a_row_of_groups_are_lit, set_up, tear_down),
         cmocka_unit_test_setup_teardown(parts_sum_up, set_up, tear_down),
         cmocka_unit_test_setup_teardown(what_cannot_be_lit_is_refused, set_up, tear_down),
         cmocka_unit_test(a_pass_that_was_not_asked_for_is_refused),
