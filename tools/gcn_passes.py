@@ -31,6 +31,7 @@ WORDS = re.compile(r"hdrp_i_gpu_vk_spirv_(?P<name>\w+)\[\] = \{(?P<words>[^}]*)\
 # Instructions and numbers of SPIR-V.
 OP_TYPE_IMAGE, OP_TYPE_SAMPLED_IMAGE, OP_TYPE_POINTER, OP_VARIABLE, OP_DECORATE = 25, 27, 32, 59, 71
 BINDING, STORAGE_BUFFER, UNIFORM_CONSTANT, STORAGE_IMAGE = 33, 12, 0, 2
+OP_SPEC_CONSTANT, SPEC_ID = 50, 1
 
 # Words of features, HDRP_GPU_VK_WORD_... of hdrp_gpu_vk_light.h.
 BLOCKERS, LIT, POINT, SPOT, PYRAMID, BOX = 1, 1 << 25, 1 << 2, 1 << 3, 1 << 4, 1 << 5
@@ -60,6 +61,10 @@ VARIANTS = {
     "punctual+blockers": SIMPLE | BLOCKERS,
     "everything": 0xfff5003f,
 }
+
+
+# HDRP_I_GPU_VK_OIT_... of hdrp_gpu_vk_oit.h: layered modes, front and the talk's.
+KINDS = {"oit_composite": {"through": 1, "front": 2, "talk": 3}}
 
 
 class Embedded:
@@ -113,6 +118,24 @@ def in_halves(shader, folder):
     return Embedded(shader.name, embed_spirv.read_words(half))
 
 
+def specialised(words, number, value):
+    """The words with another default of a specialization constant."""
+    result = list(words)
+    constant = next(words[at + 1] for opcode, at, _ in gcn_probe.instructions_of(words)
+                    if opcode == OP_DECORATE and words[at + 2:at + 4] == [SPEC_ID, number])
+    for opcode, at, _ in gcn_probe.instructions_of(words):
+        if opcode == OP_SPEC_CONSTANT and words[at + 2] == constant:
+            result[at + 3] = value
+    return result
+
+
+def modules_of(shader):
+    """(name, words) of a shader, and of the kinds that constant 2 makes of it."""
+    yield shader.name, shader.words
+    for kind, value in KINDS.get(shader.name, {}).items():
+        yield f"{shader.name}/{kind}", specialised(shader.words, 2, value)
+
+
 class Compiled:
     """What gcn_probe.Bench.ask asks about."""
 
@@ -128,13 +151,14 @@ def compiled_shaders(root, folder, wanted, half=False):
         shader = in_halves(shader, folder) if half else shader
         if not shader:
             continue
-        path = folder / f"{shader.name}.spv"
-        path.write_bytes(struct.pack(f"<{len(shader.words)}I", *shader.words))
-        if shader.name != "deferred":
-            yield Compiled(shader.name, path, "-", shader.bindings)
-            continue
-        for name, word in VARIANTS.items():
-            yield Compiled(f"{shader.name}:{name}", path, word, shader.bindings)
+        for module, words in modules_of(shader):
+            path = folder / f"{module.replace('/', '_')}.spv"
+            path.write_bytes(struct.pack(f"<{len(words)}I", *words))
+            if shader.name != "deferred":
+                yield Compiled(module, path, "-", shader.bindings)
+                continue
+            for name, word in VARIANTS.items():
+                yield Compiled(f"{shader.name}:{name}", path, word, shader.bindings)
 
 
 SHOWN = {"instructions": "instructions", "vgprs": "VGPRs", "sgprs": "SGPRs",
@@ -195,7 +219,7 @@ def lines_of(text, wanted):
     """{pass: line} of the family that is checked, and of these passes."""
     found = (line.split(",") for line in text.splitlines() if not line.startswith("#"))
     return {cells[0]: ",".join(cells) for cells in found
-            if cells[1] == CHECKED and (not wanted or cells[0].split(":")[0] in wanted)}
+            if cells[1] == CHECKED and (not wanted or re.split("[:/]", cells[0])[0] in wanted)}
 
 
 def check(bench, results, wanted):

@@ -512,7 +512,29 @@ def transparency(data):
     tables = {name: table(heads + titles, oit_lines(data, cases, precision),
                           "lrr" + "r" * len(cases))
               for name, (titles, cases, precision) in OIT_TABLES.items()}
-    return TRANSPARENCY.format(steps=oit_steps_table(data), pictures=oit_pictures(data), **tables)
+    return TRANSPARENCY.format(steps=oit_steps_table(data), pictures=oit_pictures(data),
+                               costs=oit_costs(data), gpu=GPU, **tables)
+
+
+def oit_formula_cells(data, names):
+    """Instructions of all of these formulas, and the registers of the one that has most."""
+    if not names:
+        return ["", ""]
+    instructions, vgprs = ([int(data.gpu(f"hdrp_oit_{name}", column)) for name in names]
+                           for column in ("instructions", "vgprs"))
+    return [str(sum(instructions)), str(max(vgprs))]
+
+
+def oit_costs(data):
+    """What fragments of each mode take, and the composite."""
+    lines = []
+    for mode, (absorbing, color, composite) in OIT_COSTS.items():
+        passed = data.passes.get((composite, GPU), {})
+        lines.append([mode, *oit_formula_cells(data, absorbing), *oit_formula_cells(data, color),
+                      passed.get("instructions", ""), passed.get("vgprs", "")])
+    heads = ["mode", "absorbing: instructions", "VGPRs", "colour: instructions", "VGPRs",
+             "composite: instructions", "VGPRs"]
+    return table(heads, lines, "l" + "r" * 6)
 
 
 def oit_steps_table(data):
@@ -543,6 +565,21 @@ def oit_pictures(data):
         lines.append([f"`--oit {mode}`", *(f"{percent(row['relative_rmse'])} / "
                                            f"{percent(row['relative_worst'])}" for row in some)])
     return table(["", *(title for title, _, _ in OIT_SCENES)], lines, "l" + "r" * len(OIT_SCENES))
+
+
+# Of each mode: formulas that a fragment calls before the pass of colour and in it, hdrp_oit_...,
+# and the pass that composes.
+OIT_COSTS = {
+    "recommended": ([], ["export"], "oit_composite"),
+    "front": (["range_export"], ["front_export"], "oit_composite/front"),
+    "wavelet": (["range_export", "place_of", "wavelet_insert"],
+                ["place_of", "wavelet_transmittance", "layer_export"], "oit_composite/through"),
+    "moments_6, moments_4": (["range_export", "place_of", "moments_insert"],
+                             ["place_of", "moments_transmittance", "layer_export"],
+                             "oit_composite/through"),
+    "eq7": ([], ["weight_eq7", "weighted_export"], "oit_composite"),
+    "talk": ([], ["talk_export"], "oit_composite/talk"),
+}
 
 
 # Heads of columns, scene and resolution of what is soft.
@@ -594,6 +631,11 @@ Light in R11G11B10F and coverage in R8 where the first table has RGBA16F for bot
 is then rounded at each layer:
 
 {compact}
+What a fragment takes of AMD's {gpu} in the passes before that of colour, all of them, and in that
+one, beside its shading: formulas as compute shaders, instructions of all of them and the registers
+of the largest. And `hdrp_gpu_vk_oit_composite`, which merges two resolutions, for a pixel:
+
+{costs}
 In motion: the largest step between two frames that follow each other, root mean square over the
 picture and of any pixel, and the error over all frames, against sorting each pixel. Two panes go
 through each other (*crossing*), the camera goes half a radian around cards that cut each other

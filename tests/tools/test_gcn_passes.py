@@ -115,6 +115,17 @@ class Passes(unittest.TestCase):
             for family in gcn_probe.FAMILIES:
                 self.assertIn([name, family], lines)
 
+    def test_kinds_are_those_of_the_header(self):
+        text = (trees.ROOT / "hdrp_gpu_vk_oit.h").read_text()
+        for kind, value in gcn_passes.KINDS["oit_composite"].items():
+            self.assertRegex(text, rf"HDRP_I_GPU_VK_OIT_{kind.upper()} +{value}u")
+        shader = next(shader for shader in gcn_passes.embedded_shaders(trees.ROOT)
+                      if shader.name == "oit_composite")
+        modules = dict(gcn_passes.modules_of(shader))
+        self.assertEqual(len({tuple(words) for words in modules.values()}), 4)
+        self.assertEqual(modules["oit_composite"],
+                         gcn_passes.specialised(modules["oit_composite/talk"], 2, 0))
+
     def test_limits_are_of_passes_that_are_there(self):
         recorded = {line.split(",")[0] for line in self.recorded().read_text().splitlines()}
         self.assertEqual(set(gcn_passes.LIMITS) - recorded, set())

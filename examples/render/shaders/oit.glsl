@@ -23,11 +23,10 @@ vec2 oit_place()
     return (floor(gl_FragCoord.xy) + 0.5) * oit_step() - 0.5;
 }
 
-Surface oit_surface(uint triangle_index)
+Ray oit_ray()
 {
     vec2 pixels = oit_step();
-    return surface_at(draw.mesh, triangle_index,
-                      sample_ray(oit_place() + frame.jitter_size.xy, max(pixels.x, pixels.y)));
+    return sample_ray(oit_place() + frame.jitter_size.xy, max(pixels.x, pixels.y));
 }
 
 // From the depth that was rasterised: in all passes the same bits, whatever else is computed.

@@ -6,7 +6,7 @@
 
 void main()
 {
-    Surface s = oit_surface(triangle);
+    Surface s = surface_at(draw.mesh, triangle, oit_ray());
     uvec2 pixel = uvec2(clamp(oit_place(), vec2(0.0), frame.jitter_size.zw - 1.0));
     hdrp_lit_surface lit = lit_surface_at(s, engine_data(s), pixel);
     vec3 light = (lit.diffuse + lit.specular + emission_nits(s)) * frame.depths_exposure.z;
