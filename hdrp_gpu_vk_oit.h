@@ -232,7 +232,9 @@ HDRP_I_GPU_VK_FN void hdrp_i_gpu_vk_oit_check_formats(hdrp_i_gpu_vk_oit_lack* la
     uint32_t i, seen = 0u;
     for (i = 0u; i < count; ++i) {
         VkFormatProperties p;
-        if (seen >> targets[i].format & 1u) {
+        int exists = (uint32_t)targets[i].format < 8u;
+        if (!exists || (seen >> targets[i].format & 1u)) {
+            hdrp_i_gpu_vk_oit_need(lack, exists, "targets");
             continue;
         }
         seen |= 1u << targets[i].format;

@@ -243,7 +243,11 @@ HDRP_FN float hdrp_oit_weight(float z_view, float alpha)
  *           keeps its colour; emission above it is limited, with its hue; NaN counts as 0
  *  error    none: a definition
  *  source   McGuire and Bavoil 2013, "Weighted Blended Order-Independent Transparency", eq. 6, with
- *           emission in a target of its own */
+ *           emission in a target of its own
+ *  note     revealage in a half float does not notice an alpha below 2^-12, nor in 8 bits one below
+ *           2^-9, and a small one is rounded to their steps, with its colour: what is bright and
+ *           hardly covers, as highlights on clear glass, is emission. Sums stop to grow where a
+ *           layer adds less than 2^-12 of them */
 HDRP_FN hdrp_oit_targets hdrp_oit_weighted_export(hdrp_oit_fragment f, float weight, float scale)
 {
     hdrp_oit_targets t;
@@ -455,8 +459,8 @@ HDRP_FN hdrp_oit_targets hdrp_oit_talk_merge(hdrp_oit_targets a, hdrp_oit_target
 
 #define HDRP_OIT_MODE_RECOMMENDED 0 /* one pass: hdrp_oit_export */
 #define HDRP_OIT_MODE_FRONT       1 /* two passes, the first writes depth: hdrp_oit_front_export */
-#define HDRP_OIT_MODE_WAVELET     2 /* three passes: the best */
-#define HDRP_OIT_MODE_MOMENTS_6   3 /* three passes */
+#define HDRP_OIT_MODE_WAVELET     2 /* three passes: best where depths are spread */
+#define HDRP_OIT_MODE_MOMENTS_6   3 /* three passes: best behind a layer far before the others */
 #define HDRP_OIT_MODE_MOMENTS_4   4 /* three passes */
 #define HDRP_OIT_MODE_EQ7         5 /* one pass with published weights, emission apart */
 #define HDRP_OIT_MODE_EQ8         6
@@ -568,7 +572,8 @@ HDRP_FN float hdrp_i_oit_through(float x)
  *  through  any    [0,1] how much of it is seen
  *  scale    any    as for hdrp_oit_export
  *  returns  valid
- *  edges    as hdrp_oit_weighted_export
+ *  edges    as hdrp_oit_weighted_export: a colour times scale above HDRP_OIT_PRODUCT_MAX counts
+ *           less beside others, so that scale is for scenes whose layers are that bright
  *  error    none: a definition
  *  source   Muenstermann et al. 2018, "Moment-Based Order-Independent Transparency", section on
  *           compositing, with emission in a target of its own */
@@ -612,7 +617,8 @@ HDRP_TYPEDEF(hdrp_oit_front_targets)
  *  nearest_m  any    least depth of what covers in the pixel: hdrp_oit_range_export, blended
  *  scale      any    as for hdrp_oit_export
  *  returns    valid
- *  edges      what is before the nearest depth counts as at it; NaN: nothing is nearest
+ *  edges      what is before the nearest depth counts as at it; NaN: nothing is nearest; colours
+ *             times scale of the nearest are limited to HDRP_OIT_PRODUCT_MAX, with their hue
  *  error      none: a selection of hdrp_oit_export
  *  source     own: one exact layer and a weighted tail
  *  note       fragments at exactly the nearest depth are added up */
@@ -912,12 +918,14 @@ HDRP_FN float hdrp_i_oit_biased(float sum, float inverse, float even, float bias
  *  source   Muenstermann et al. 2018, "Moment-Based Order-Independent Transparency", algorithms for
  *           four and six power moments with the bias of 32-bit floats
  *  note     overestimation is half of what is not the fragment's own, where theirs is a quarter of
- *           all: that is a third or more of the error less */
+ *           all: that is a third or more of the error less. The bias is four times theirs, so that
+ *           noise in the last bits of sums counts less: where all depths behind the nearest are
+ *           within a thousandth of each other, the order of fragments still changes up to 0.1 */
 HDRP_FN float hdrp_oit_moments_transmittance(hdrp_oit_moments m, hdrp_oit_fragment f,
                                              hdrp_oit_place place, hdrp_u32 count)
 {
     float six = count < 6u ? 0.0f : 1.0f;
-    float bias = six > 0.0f ? 5e-6f : 5e-7f;
+    float bias = six > 0.0f ? 2e-5f : 2e-6f;
     float inverse = 1.0f / hdrp_clamp(m.high.z, 1e-6f, 1e6f);
     float x = 2.0f * place.unit - 1.0f;
     float front = hdrp_i_oit_front(m.high.w, hdrp_i_oit_absorbed(f.alpha), place);
@@ -984,7 +992,7 @@ typedef struct hdrp_oit_desc {
     hdrp_oit_mode mode;
     hdrp_oit_precision precision;
     float scale;         /* as for hdrp_oit_export; 0: 1 */
-    float near_m, far_m; /* of device depths, for eq. 10 and 2015; 0: 0.5 and 300 */
+    float near_m, far_m; /* of device depths, for eq. 10 and 2015; 0: 0.5 and 300; near < far */
     float feather;       /* of the talk; 0: 1/3 */
     float exposure;      /* of the talk; 0: 1 */
 } hdrp_oit_desc;
@@ -1068,7 +1076,7 @@ HDRP_API void hdrp_oit_blend_rows(hdrp_oit_image* image, uint32_t pass,
  *  row_begin  any  first row of image
  *  row_end    any  after the last row; limited to the height
  *  returns    HDRP_OK, or an error, with image untouched
- *  errors     HDRP_ERROR_NULL_POINTER, HDRP_ERROR_BAD_ARGUMENT for another mode or precision
+ *  errors     HDRP_ERROR_NULL_POINTER, HDRP_ERROR_BAD_ARGUMENT for another mode, precision or scale
  *  range      rows: disjoint ranges may be added at the same time
  *  note       in modes of several passes both images need all fragments in every pass but the last:
  *             what is nearest and what absorbs hides those of the other resolution too. In the last
@@ -1264,12 +1272,22 @@ static void hdrp_i_oit_blend_texel(const hdrp_oit_target* target, hdrp_v4* texel
 
 /* ---- images ---------------------------------------------------------------------------------- */
 
+static float hdrp_i_oit_near_m(const hdrp_oit_desc* d)
+{
+    return d->near_m > 0.0f ? d->near_m : 0.5f;
+}
+
+static float hdrp_i_oit_far_m(const hdrp_oit_desc* d)
+{
+    return d->far_m > 0.0f ? d->far_m : 300.0f;
+}
+
 static int hdrp_i_oit_desc_valid(const hdrp_oit_desc* d)
 {
     return d->width_px > 0u && d->height_px > 0u && hdrp_i_oit_exists(d->mode, d->precision) &&
-           d->scale >= 0.0f && d->scale <= 1048576.0f && d->near_m >= 0.0f &&
-           d->far_m >= d->near_m && d->far_m <= HDRP_OIT_DEPTH_MAX && d->feather >= 0.0f &&
-           d->feather <= 1.0f && d->exposure >= 0.0f && d->exposure <= 1e9f;
+           d->scale >= 0.0f && d->scale <= 1048576.0f && d->near_m >= 0.0f && d->far_m >= 0.0f &&
+           hdrp_i_oit_far_m(d) > hdrp_i_oit_near_m(d) && d->far_m <= HDRP_OIT_DEPTH_MAX &&
+           d->feather >= 0.0f && d->feather <= 1.0f && d->exposure >= 0.0f && d->exposure <= 1e9f;
 }
 
 /* Bytes of the texels; 0 where they cannot be counted, or a pixel not in 32 bits. */
@@ -1311,8 +1329,8 @@ HDRP_API hdrp_result hdrp_oit_image_init(hdrp_oit_image* image, const hdrp_oit_d
     }
     image->desc = *desc;
     image->desc.scale = desc->scale > 0.0f ? desc->scale : 1.0f;
-    image->desc.near_m = desc->near_m > 0.0f ? desc->near_m : 0.5f;
-    image->desc.far_m = desc->far_m > image->desc.near_m ? desc->far_m : 300.0f;
+    image->desc.near_m = hdrp_i_oit_near_m(desc);
+    image->desc.far_m = hdrp_i_oit_far_m(desc);
     image->desc.feather = desc->feather > 0.0f ? desc->feather : 1.0f / 3.0f;
     image->desc.exposure = desc->exposure > 0.0f ? desc->exposure : 1.0f;
     image->target_count = hdrp_oit_describe_targets(desc->mode, desc->precision, image->targets);
@@ -1580,7 +1598,8 @@ HDRP_API hdrp_result hdrp_oit_merge_rows(hdrp_oit_image* image, const hdrp_oit_i
     if (!image || !low) {
         return HDRP_ERROR_NULL_POINTER;
     }
-    if (image->desc.mode != low->desc.mode || image->desc.precision != low->desc.precision) {
+    if (image->desc.mode != low->desc.mode || image->desc.precision != low->desc.precision ||
+        image->desc.scale != low->desc.scale) {
         return HDRP_ERROR_BAD_ARGUMENT;
     }
     end = row_end < image->desc.height_px ? row_end : image->desc.height_px;

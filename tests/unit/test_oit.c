@@ -525,6 +525,9 @@ static void other_modes_do_not_join(void** state)
     (void)state;
     assert_int_equal(hdrp_oit_merge_rows(&a.image, &b.image, 0, 2), HDRP_ERROR_BAD_ARGUMENT);
     assert_int_equal(hdrp_oit_merge_rows(&a.image, &c.image, 0, 2), HDRP_ERROR_BAD_ARGUMENT);
+    c.image.desc = a.image.desc;
+    c.image.desc.scale = 2.0f;
+    assert_int_equal(hdrp_oit_merge_rows(&a.image, &c.image, 0, 2), HDRP_ERROR_BAD_ARGUMENT);
     assert_int_equal(hdrp_oit_merge_rows(NULL, &a.image, 0, 2), HDRP_ERROR_NULL_POINTER);
     assert_int_equal(hdrp_oit_merge_rows(&a.image, NULL, 0, 2), HDRP_ERROR_NULL_POINTER);
     free(a.memory);

@@ -148,6 +148,12 @@ static pixel random_pixel(void)
     return p;
 }
 
+/* Moments are moved a little towards these, as Muenstermann et al. do it for 32-bit floats: then
+ * noise in their last bits cannot make them those of no distribution. */
+static const double even[2][POWERS] = {{1, 0, 0.375, 0, 0.375, 0, 0},
+                                       {1, 0, 0.48, 0, 0.451, 0, 0.45}};
+static const double bias[2] = {2e-6, 2e-5};
+
 /* Largest and mean error of the transmittance of all fragments but the nearest. */
 static void measure(int count, int pixels, double* largest, double* mean)
 {
@@ -158,6 +164,7 @@ static void measure(int count, int pixels, double* largest, double* mean)
         double b[POWERS];
         for (int k = 0; k < POWERS; ++k) {
             b[k] = p.power[k] / p.power[0];
+            b[k] += (even[count == 6][k] - b[k]) * bias[count == 6];
         }
         for (int k = 1; k < LAYERS; ++k) {
             double own = -log1p(-(double)p.f[k].alpha) / p.power[0];
@@ -186,7 +193,7 @@ static void six_moments_solve_the_moment_problem(void** state)
     (void)state;
     /* So many that some fragments are where one root of the polynomial is far off. */
     measure(6, 2000, &largest, &mean);
-    assert_true(largest <= 4e-4 && mean <= 2e-6);
+    assert_true(largest <= 4e-5 && mean <= 2e-7);
 }
 
 static void the_nearest_is_seen_whole(void** state)

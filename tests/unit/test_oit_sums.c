@@ -185,6 +185,16 @@ static void ranges_of_descriptions_are_closed(void** state)
         *(i / 2 == 0 ? &d.scale : i / 2 == 1 ? &d.feather : &d.exposure) = value;
         assert_int_equal(init(&image, &d), i % 2 == 0 ? HDRP_OK : HDRP_ERROR_BAD_ARGUMENT);
     }
+    static const float depths[4][2] = {{0.5f, 0.5f}, {0.0f, 0.3f}, {300.0f, 0.0f}, {9.0f, 8.0f}};
+    for (int i = 0; i < 4; ++i) { /* near before far, the defaults included */
+        hdrp_oit_desc d = desc_of(HDRP_OIT_MODE_EQ10);
+        d.near_m = depths[i][0];
+        d.far_m = depths[i][1];
+        assert_int_equal(init(&image, &d), HDRP_ERROR_BAD_ARGUMENT);
+    }
+    hdrp_oit_desc late = desc_of(HDRP_OIT_MODE_EQ10);
+    late.near_m = 299.0f;
+    assert_int_equal(init(&image, &late), HDRP_OK);
     hdrp_oit_desc far_away = desc_of(HDRP_OIT_MODE_EQ10);
     far_away.far_m = 1e6f;
     assert_int_equal(init(&image, &far_away), HDRP_OK);
