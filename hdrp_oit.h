@@ -457,19 +457,19 @@ HDRP_FN hdrp_oit_targets hdrp_oit_talk_merge(hdrp_oit_targets a, hdrp_oit_target
 
 /* >>modes */
 
-#define HDRP_OIT_MODE_RECOMMENDED 0 /* one pass: hdrp_oit_export */
-#define HDRP_OIT_MODE_FRONT       1 /* two passes, the first writes depth: hdrp_oit_front_export */
-#define HDRP_OIT_MODE_WAVELET     2 /* three passes: best where depths are spread */
-#define HDRP_OIT_MODE_MOMENTS_6   3 /* three passes: best behind a layer far before the others */
-#define HDRP_OIT_MODE_MOMENTS_4   4 /* three passes */
-#define HDRP_OIT_MODE_EQ7         5 /* one pass with published weights, emission apart */
-#define HDRP_OIT_MODE_EQ8         6
-#define HDRP_OIT_MODE_EQ9         7
-#define HDRP_OIT_MODE_EQ10        8
-#define HDRP_OIT_MODE_2015        9
-#define HDRP_OIT_MODE_TALK_WEIGHT 10 /* that of the talk, divided as in eq. 6, emission apart */
-#define HDRP_OIT_MODE_TALK        11 /* as shown */
-#define HDRP_OIT_MODE_COUNT       12
+#define HDRP_OIT_MODE_RECOMMENDED 0u /* one pass: hdrp_oit_export */
+#define HDRP_OIT_MODE_FRONT       1u /* two passes, the first writes depth: hdrp_oit_front_export */
+#define HDRP_OIT_MODE_WAVELET     2u /* three passes: best where depths are spread */
+#define HDRP_OIT_MODE_MOMENTS_6   3u /* three passes: best behind a layer far before the others */
+#define HDRP_OIT_MODE_MOMENTS_4   4u /* three passes */
+#define HDRP_OIT_MODE_EQ7         5u /* one pass with published weights, emission apart */
+#define HDRP_OIT_MODE_EQ8         6u
+#define HDRP_OIT_MODE_EQ9         7u
+#define HDRP_OIT_MODE_EQ10        8u
+#define HDRP_OIT_MODE_2015        9u
+#define HDRP_OIT_MODE_TALK_WEIGHT 10u /* that of the talk, divided as in eq. 6, emission apart */
+#define HDRP_OIT_MODE_TALK        11u /* as shown */
+#define HDRP_OIT_MODE_COUNT       12u
 
 /** The weight of a mode, for hdrp_oit_weighted_export.
  *  mode          any    HDRP_OIT_MODE_...

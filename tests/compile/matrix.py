@@ -207,8 +207,8 @@ class Matrix:
                 "        missing += functions[i] == 0;\n    }\n    return missing != 0;\n}\n")
         jobs = []
         for compiler in ("gcc", "clang"):
-            for user_language, unit_language in (("c", "c"), ("cxx", "c"), ("c", "cxx"),
-                                                 ("cxx", "cxx")):
+            pairs = [("c", "c"), ("cxx", "c"), ("c", "cxx"), ("cxx", "cxx")]
+            for user_language, unit_language in pairs[1:2] if self.brief else pairs:
                 name = f"link-{compiler}-{user_language}-{unit_language}"
                 files, commands, objects = {}, [], []
                 for part, language, text in (("user", user_language, user),

@@ -21,7 +21,7 @@ int main(int count, char** arguments)
     for (size_t i = 0; i < oit_case_count; ++i) {
         oit_pixels pixels;
         oit_generate(&oit_cases[i], &pixels);
-        for (int m = 0; m < HDRP_OIT_MODE_COUNT; ++m) {
+        for (uint32_t m = 0; m < HDRP_OIT_MODE_COUNT; ++m) {
             for (int k = 0; k < 3; ++k) {
                 hdrp_oit_mode mode = (hdrp_oit_mode)m;
                 hdrp_oit_precision precision = (hdrp_oit_precision)k;

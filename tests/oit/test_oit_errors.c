@@ -108,7 +108,7 @@ static void a_front_apart_is_worth_a_pass_of_depth(void** state)
 static void what_only_adds_is_exact_with_emission_apart(void** state)
 {
     (void)state;
-    for (int m = 0; m < HDRP_OIT_MODE_COUNT; ++m) {
+    for (uint32_t m = 0; m < HDRP_OIT_MODE_COUNT; ++m) {
         oit_error e = measure("additive", (hdrp_oit_mode)m, HDRP_OIT_PRECISION_FLOAT);
         if (m != HDRP_OIT_MODE_TALK) {
             assert_true(e.largest <= 4e-6);
@@ -123,7 +123,7 @@ static void what_only_adds_is_exact_with_emission_apart(void** state)
 static void a_dense_front_hides_what_is_behind(void** state)
 {
     (void)state;
-    for (int m = HDRP_OIT_MODE_FRONT; m <= HDRP_OIT_MODE_MOMENTS_4; ++m) {
+    for (uint32_t m = HDRP_OIT_MODE_FRONT; m <= HDRP_OIT_MODE_MOMENTS_4; ++m) {
         oit_error e = measure("front_99", (hdrp_oit_mode)m, HDRP_OIT_PRECISION_NATIVE);
         assert_true(e.largest <= 0.03);
     }
@@ -143,7 +143,7 @@ static void errors_are_those_on_record(void** state)
     for (size_t i = 0; i < oit_case_count; ++i) {
         oit_pixels pixels;
         oit_generate(&oit_cases[i], &pixels);
-        for (int m = 0; m < HDRP_OIT_MODE_COUNT; ++m) {
+        for (uint32_t m = 0; m < HDRP_OIT_MODE_COUNT; ++m) {
             for (int k = 0; k < 3; ++k, ++rows) {
                 oit_error e =
                     oit_measure(&oit_cases[i], &pixels, (hdrp_oit_mode)m, (hdrp_oit_precision)k);
@@ -172,13 +172,13 @@ static void nothing_jumps_that_sorting_cards_makes_jump(void** state)
     (void)state;
     assert_true(motion_measure(MOTION_CROSSING, crossing) && motion_measure(MOTION_ORBIT, orbit));
     assert_true(crossing[MOTION_SORTED_CARDS].picture > 0.05);
-    for (int way = 0; way < HDRP_OIT_MODE_COUNT; ++way) {
+    for (uint32_t way = 0; way < HDRP_OIT_MODE_COUNT; ++way) {
         assert_true(crossing[way].picture <= 0.15 * crossing[MOTION_SORTED_CARDS].picture);
         assert_true(crossing[way].picture <= 0.5 * crossing[MOTION_SORTED_PIXELS].picture);
     }
     assert_true(orbit[HDRP_OIT_MODE_RECOMMENDED].picture <= 0.001);
     assert_true(orbit[HDRP_OIT_MODE_RECOMMENDED].pixel <= 0.01);
-    for (int way = HDRP_OIT_MODE_WAVELET; way <= HDRP_OIT_MODE_MOMENTS_4; ++way) {
+    for (uint32_t way = HDRP_OIT_MODE_WAVELET; way <= HDRP_OIT_MODE_MOMENTS_4; ++way) {
         assert_true(orbit[way].picture <= 1.05 * orbit[MOTION_SORTED_PIXELS].picture);
     }
 }

@@ -160,7 +160,7 @@ static void one_layer_is_exact_in_every_mode(void** state)
 {
     const hdrp_v3 behind = v3(0.7f, 0.2f, 0.4f);
     (void)state;
-    for (int m = 0; m < HDRP_OIT_MODE_COUNT; ++m) {
+    for (uint32_t m = 0; m < HDRP_OIT_MODE_COUNT; ++m) {
         for (int i = 0; i < 200; ++i) {
             float alpha = i == 0 ? 1.0f : uniform(0.02f, 1.0f);
             hdrp_oit_fragment f = fragment(v3(uniform(0, 1), uniform(0, 1), uniform(0, 1)),
@@ -179,7 +179,7 @@ static void no_layer_leaves_what_is_behind(void** state)
 {
     const hdrp_v3 behind = v3(0.7f, 1e4f, 0.0f);
     (void)state;
-    for (int m = 0; m < HDRP_OIT_MODE_COUNT; ++m) {
+    for (uint32_t m = 0; m < HDRP_OIT_MODE_COUNT; ++m) {
         assert_color(color_of(NULL, 0, behind, (hdrp_oit_mode)m, HDRP_OIT_PRECISION_NATIVE), behind,
                      0.0);
     }
@@ -190,7 +190,7 @@ static void what_is_not_there_has_no_influence(void** state)
     const hdrp_v3 behind = v3(0.3f, 0.5f, 0.9f);
     const float depths[4] = {0.0f, 1.5f, 30.0f, INFINITY};
     (void)state;
-    for (int m = 0; m < HDRP_OIT_MODE_COUNT; ++m) {
+    for (uint32_t m = 0; m < HDRP_OIT_MODE_COUNT; ++m) {
         hdrp_oit_fragment f[9];
         for (int i = 0; i < 5; ++i) {
             f[i] = random_fragment();
@@ -208,7 +208,7 @@ static void order_changes_no_more_than_rounding(void** state)
 {
     const hdrp_v3 behind = v3(0.3f, 0.5f, 0.9f);
     (void)state;
-    for (int m = 0; m < HDRP_OIT_MODE_COUNT; ++m) {
+    for (uint32_t m = 0; m < HDRP_OIT_MODE_COUNT; ++m) {
         /* The talk's target of 8 bits rounds at each of 12 layers; the rest has half floats. */
         double tolerance = m == HDRP_OIT_MODE_TALK ? 12.0 * 8.0 / 255.0 : 0.02;
         for (int i = 0; i < 100; ++i) {
@@ -238,7 +238,7 @@ static void two_layers_are_exact_in_the_better_modes(void** state)
 {
     const hdrp_v3 behind = v3(0.3f, 0.5f, 0.9f);
     (void)state;
-    for (int m = HDRP_OIT_MODE_FRONT; m <= HDRP_OIT_MODE_MOMENTS_4; ++m) {
+    for (uint32_t m = HDRP_OIT_MODE_FRONT; m <= HDRP_OIT_MODE_MOMENTS_4; ++m) {
         for (int i = 0; i < 200; ++i) {
             hdrp_oit_fragment f[2] = {random_fragment(), random_fragment()};
             if (m == HDRP_OIT_MODE_FRONT) { /* for which the second layer has no known depth */
@@ -256,7 +256,7 @@ static void two_layers_are_exact_in_the_better_modes(void** state)
 static void layers_at_one_depth_share(void** state)
 {
     (void)state;
-    for (int m = HDRP_OIT_MODE_WAVELET; m <= HDRP_OIT_MODE_MOMENTS_4; ++m) {
+    for (uint32_t m = HDRP_OIT_MODE_WAVELET; m <= HDRP_OIT_MODE_MOMENTS_4; ++m) {
         hdrp_oit_fragment f[2] = {fragment(v3(1, 0, 0), v3(0, 0, 0), 0.5f, 3.0f),
                                   fragment(v3(0, 1, 0), v3(0, 0, 0), 0.5f, 3.0f)};
         hdrp_v3 c = color_of(f, 2, v3(0, 0, 0), (hdrp_oit_mode)m, HDRP_OIT_PRECISION_FLOAT);
@@ -270,7 +270,7 @@ static void many_layers_at_one_depth_stay_visible(void** state)
     const float alphas[4] = {0.5f, 0.9f, 0.99f, 1.0f};
     hdrp_oit_fragment f[64];
     (void)state;
-    for (int m = HDRP_OIT_MODE_WAVELET; m <= HDRP_OIT_MODE_MOMENTS_4; ++m) {
+    for (uint32_t m = HDRP_OIT_MODE_WAVELET; m <= HDRP_OIT_MODE_MOMENTS_4; ++m) {
         for (int i = 0; i < 4; ++i) {
             for (int k = 0; k < 64; ++k) {
                 f[k] = fragment(v3(1, 0.5f, 0), v3(0, 0, 0), alphas[i], 3.0f);
@@ -290,7 +290,7 @@ static void emission_is_seen_through_what_is_before_it(void** state)
     const hdrp_oit_fragment glass = fragment(v3(0, 0, 0), v3(0, 0, 0), 0.75f, 5.0f);
     const float depths[3] = {2.0f, 5.0f, 9.0f}, seen[3] = {1.0f, 1.0f, 0.25f};
     (void)state;
-    for (int m = HDRP_OIT_MODE_WAVELET; m <= HDRP_OIT_MODE_MOMENTS_4; ++m) {
+    for (uint32_t m = HDRP_OIT_MODE_WAVELET; m <= HDRP_OIT_MODE_MOMENTS_4; ++m) {
         for (int i = 0; i < 3; ++i) {
             hdrp_oit_fragment f[2] = {fragment(v3(0, 0, 0), v3(1, 2, 4), 0.0f, depths[i]), glass};
             float s =
@@ -420,7 +420,7 @@ static void splits_give_the_same_bits(void** state)
         f[i] = random_fragment();
         pixels[i] = (uint32_t)uniform(0.0f, (float)(SIDE * SIDE + 8u)); /* some are outside */
     }
-    for (int m = 0; m < HDRP_OIT_MODE_COUNT; ++m) {
+    for (uint32_t m = 0; m < HDRP_OIT_MODE_COUNT; ++m) {
         picture whole = make_picture(SIDE, SIDE, (hdrp_oit_mode)m, HDRP_OIT_PRECISION_COMPACT);
         picture split = make_picture(SIDE, SIDE, (hdrp_oit_mode)m, HDRP_OIT_PRECISION_COMPACT);
         blend(&whole, f, pixels, COUNT);
@@ -485,7 +485,7 @@ static void check_low(hdrp_oit_mode mode, int near_is_low)
 static void a_low_layer_joins_as_if_it_were_full(void** state)
 {
     (void)state;
-    for (int m = 0; m < HDRP_OIT_MODE_COUNT; ++m) {
+    for (uint32_t m = 0; m < HDRP_OIT_MODE_COUNT; ++m) {
         for (int i = 0; i < 8; ++i) {
             check_low((hdrp_oit_mode)m, i & 1);
         }
@@ -499,7 +499,7 @@ static void low_pixels_fade_into_each_other(void** state)
     const float share[8] = {1.0f, 1.0f, 1.0f, 0.75f, 0.25f, 0.0f, 0.0f, 0.0f};
     const hdrp_oit_fragment f = fragment(v3(0.5f, 0.5f, 0.5f), v3(0.25f, 0, 0), 0.5f, 4.0f);
     (void)state;
-    for (int m = 0; m < HDRP_OIT_MODE_TALK; ++m) {
+    for (uint32_t m = 0; m < HDRP_OIT_MODE_TALK; ++m) {
         picture high = make_picture(8, 1, (hdrp_oit_mode)m, HDRP_OIT_PRECISION_FLOAT);
         picture low = make_picture(4, 1, (hdrp_oit_mode)m, HDRP_OIT_PRECISION_FLOAT);
         const uint32_t pixels[2] = {0, 1};
@@ -611,7 +611,7 @@ static void bad_descriptions_are_rejected(void** state)
         hdrp_oit_describe_targets(HDRP_OIT_MODE_COUNT, HDRP_OIT_PRECISION_NATIVE, targets), 0);
     assert_int_equal(hdrp_oit_pass_count(HDRP_OIT_MODE_COUNT), 0);
     assert_int_equal(hdrp_oit_bytes_per_pixel(HDRP_OIT_MODE_COUNT, HDRP_OIT_PRECISION_NATIVE), 0);
-    for (int m = 0; m < HDRP_OIT_MODE_COUNT; ++m) {
+    for (uint32_t m = 0; m < HDRP_OIT_MODE_COUNT; ++m) {
         for (int p = 0; p < 3; ++p) {
             assert_in_range(
                 hdrp_oit_describe_targets((hdrp_oit_mode)m, (hdrp_oit_precision)p, targets), 2,
