@@ -208,7 +208,7 @@ class Matrix:
         jobs = []
         for compiler in ("gcc", "clang"):
             pairs = [("c", "c"), ("cxx", "c"), ("c", "cxx"), ("cxx", "cxx")]
-            for user_language, unit_language in pairs[1:2] if self.brief else pairs:
+            for user_language, unit_language in pairs[:1] if self.brief else pairs:
                 name = f"link-{compiler}-{user_language}-{unit_language}"
                 files, commands, objects = {}, [], []
                 for part, language, text in (("user", user_language, user),
