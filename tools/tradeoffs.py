@@ -217,6 +217,8 @@ class Data:
         self.cull_file = first_result("cull_cpu_*.csv")
         self.cull = cull_rows(self.cull_file)
         self.oit = rows(ROOT / "tests/oit/recorded.csv")
+        self.oit_times_file = first_result("oit_*.csv")
+        self.oit_times = rows(self.oit_times_file)
         self.oit_pictures = rows(ROOT / "tests/oit/pictures.csv")
         self.oit_steps = rows(ROOT / "tests/oit/steps.csv")
         self.recorded_file = ROOT / "tests/accuracy/recorded.csv"
@@ -513,7 +515,7 @@ def transparency(data):
                           "lrr" + "r" * len(cases))
               for name, (titles, cases, precision) in OIT_TABLES.items()}
     return TRANSPARENCY.format(steps=oit_steps_table(data), pictures=oit_pictures(data),
-                               costs=oit_costs(data), gpu=GPU, **tables)
+                               costs=oit_costs(data), times=oit_times(data), gpu=GPU, **tables)
 
 
 def oit_formula_cells(data, names):
@@ -535,6 +537,30 @@ def oit_costs(data):
     heads = ["mode", "absorbing: instructions", "VGPRs", "colour: instructions", "VGPRs",
              "composite: instructions", "VGPRs"]
     return table(heads, lines, "l" + "r" * 6)
+
+
+def oit_times(data):
+    """Milliseconds of what is drawn in each mode; nothing where they have not been measured."""
+    if not data.oit_times:
+        return ""
+    lines = []
+    for mode in dict.fromkeys(row["mode"] for row in data.oit_times):
+        ms = {kind: sum(float(row["ms"]) for row in data.oit_times
+                        if row["mode"] == mode and row["pass"].startswith(kind))
+              for kind in ("transparent surfaces", "transparent:", "half resolution",
+                           "composition")}
+        lines.append([mode, *(f"{value:.3g}" for value in (*ms.values(), sum(ms.values())))])
+    heads = ["mode", "in order", "unsorted", "half resolution", "composition", "together"]
+    device = remarks(data.oit_times_file)[0][len("device: "):]
+    return OIT_TIMES.format(device=device, times=table(heads, lines, "l" + "r" * 5))
+
+
+OIT_TIMES = """Milliseconds of all passes over what is transparent in the built-in scene, light loops
+included, for a sample of every pixel, on {device}. What transmits light stays in order in every mode;
+sorted is by triangles, smoke at full resolution too:
+
+{times}
+"""
 
 
 def oit_steps_table(data):
@@ -636,7 +662,7 @@ one, beside its shading: formulas as compute shaders, instructions of all of the
 of the largest. And `hdrp_gpu_vk_oit_composite`, which merges two resolutions, for a pixel:
 
 {costs}
-In motion: the largest step between two frames that follow each other, root mean square over the
+{times}In motion: the largest step between two frames that follow each other, root mean square over the
 picture and of any pixel, and the error over all frames, against sorting each pixel. Two panes go
 through each other (*crossing*), the camera goes half a radian around cards that cut each other
 (*orbit*) or through smoke (*dolly*), 240 frames each:
