@@ -171,7 +171,8 @@ void hdrp_i_keep_factors(inout hdrp_i_kept k, hdrp_brdf_lit_view w)
     vec3 p = w.bounces.passed;
     k.factors = uvec4(packHalf2x16(p.xy), packHalf2x16(vec2(p.z, w.diffuse.x)),
                       packHalf2x16(w.diffuse.yz), packHalf2x16(r.xy));
-    k.last = packHalf2x16(vec2(r.z, w.multiscatter));
+    // What hardly loses light divides by that: up to 3e6, more than halves hold.
+    k.last = packHalf2x16(vec2(r.z, w.multiscatter * (1.0 / 256.0)));
     k.fresnel = uvec2(packHalf2x16(w.fresnel0.xy), packHalf2x16(vec2(w.fresnel0.z, w.fresnel90)));
 }
 
@@ -227,7 +228,7 @@ hdrp_brdf_lit hdrp_i_eval(hdrp_brdf_data d, hdrp_brdf_lit_view w, hdrp_i_kept ke
     diffuse = hdrp_brdf_diffuse_share(fgd, w.bounces, w.fresnel90);
     diffuse *= vec3(unpackHalf2x16(kept.factors.y).y, unpackHalf2x16(kept.factors.z));
     w.bounces.reflected = vec3(unpackHalf2x16(kept.factors.w), unpackHalf2x16(kept.last).x);
-    w.multiscatter = unpackHalf2x16(kept.last).y;
+    w.multiscatter = 256.0 * unpackHalf2x16(kept.last).y;
     return hdrp_i_brdf_lit_rest(d, w, l, first, diffuse, fgd.albedo, HDRP_FEATURES);
 }
 
