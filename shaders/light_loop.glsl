@@ -171,7 +171,7 @@ void hdrp_i_keep_factors(inout hdrp_i_kept k, hdrp_brdf_lit_view w)
     vec3 p = w.bounces.passed;
     k.factors = uvec4(packHalf2x16(p.xy), packHalf2x16(vec2(p.z, w.diffuse.x)),
                       packHalf2x16(w.diffuse.yz), packHalf2x16(r.xy));
-    // What hardly loses light divides by that: up to 3e6, more than halves hold.
+    // What hardly loses light divides by that: 3e5 at roughness 0, more than halves hold.
     k.last = packHalf2x16(vec2(r.z, w.multiscatter * (1.0 / 256.0)));
     k.fresnel = uvec2(packHalf2x16(w.fresnel0.xy), packHalf2x16(vec2(w.fresnel0.z, w.fresnel90)));
 }
