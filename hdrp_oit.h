@@ -21,11 +21,11 @@
  *     color = hdrp_oit_layer_composite(t_of_the_pixel, opaque_color, scale);
  *
  * Emission is what a surface adds whatever its alpha: fire, sparks, glow. It goes into sums of its
- * own, so that pixels where nothing covers anything are exact in every mode but that of the talk.
- * What shines in proportion to its alpha is better off as a part of its colour. Colours are as they
- * will be shown, exposed; scale is a power of 2 that brings them near 1 where they are not, and
- * products with weights stay below 65504 / 32 whatever they are: 32 fragments never overflow a half
- * float.
+ * own, so that pixels where nothing covers anything are exact in every mode but that of the talk,
+ * and so is one layer that covers and emits, however thin. What shines in proportion to its alpha
+ * is a part of its colour. Colours are as they will be shown, exposed; scale is a power of 2 that
+ * brings them near 1 where they are not, and products with weights stay below 65504 / 32 whatever
+ * they are: 32 fragments never overflow a half float.
  *
  * Which mode: tests/oit/recorded.csv holds the error of each against sorting, docs/tradeoffs.md
  * shows them. A fragment that is not there (alpha 0, no emission) has no influence on any.
@@ -62,8 +62,9 @@
 
 #define HDRP_OIT_LIGHT_MAX   65504.0f /* largest half float: colours are limited to it */
 #define HDRP_OIT_PRODUCT_MAX 2047.0f  /* of a colour and its weight: 32 of them fit a half float */
-#define HDRP_OIT_DEPTH_MIN   1e-6f    /* m */
-#define HDRP_OIT_DEPTH_MAX   1e6f     /* m; infinity counts as it */
+#define HDRP_OIT_THIN_ALPHA  0.0078125f /* 2^-7: below it a colour is added as emission is */
+#define HDRP_OIT_DEPTH_MIN   1e-6f      /* m */
+#define HDRP_OIT_DEPTH_MAX   1e6f       /* m; infinity counts as it */
 
 /* What a surface does to a pixel. Made by hdrp_oit_fragment_make. */
 struct hdrp_oit_fragment {
@@ -234,6 +235,57 @@ HDRP_FN float hdrp_oit_weight(float z_view, float alpha)
     return hdrp_exp2(hdrp_clamp(level - slope * x, -14.0f, 0.0f));
 }
 
+/* One over the mean transmittance over the depth of what absorbs evenly and lets r through:
+ * -ln r / (1 - r). */
+HDRP_FN float hdrp_i_oit_dimming(float r)
+{
+    float limited = hdrp_clamp(r, 1.52587890625e-5f, 1.0f);
+    float d = 1.0f - limited;
+    float near_1 = 1.0f + d * (0.5f + d * (0.333333333f + d * (0.25f + d * 0.2f)));
+    float far_from_1 = -0.69314718f * hdrp_log2(hdrp_min(limited, 0.9f)) / hdrp_max(d, 0.1f);
+    return d < 0.1f ? near_1 : far_from_1;
+}
+
+/* What is too thin for the rounding of revealage adds its colour as emission. */
+HDRP_FN hdrp_oit_fragment hdrp_i_oit_thin(hdrp_oit_fragment f)
+{
+    hdrp_oit_fragment t = f;
+    float thin = f.alpha < HDRP_OIT_THIN_ALPHA ? 1.0f : 0.0f;
+    t.premultiplied = hdrp_v3_scale(f.premultiplied, 1.0f - thin);
+    t.emission = hdrp_v3_mad(f.emission, f.premultiplied, thin);
+    return t;
+}
+
+/* Emission of what covers goes with its colour, which has a weight of depth, in a share that rises
+ * with alpha: seen as all emission is, that of a dense layer would have the wrong depth; divided by
+ * sums of alpha, that of a thin one would be what the others are multiplied by. */
+HDRP_FN hdrp_oit_fragment hdrp_i_oit_shared(hdrp_oit_fragment f)
+{
+    hdrp_oit_fragment t = hdrp_i_oit_thin(f);
+    float b = 1.0f - f.alpha;
+    float apart = b * b * (b * b);
+    float with_color = f.alpha < HDRP_OIT_THIN_ALPHA ? 0.0f : 1.0f - apart;
+    t.premultiplied = hdrp_v3_mad(t.premultiplied, t.emission, with_color);
+    t.emission = hdrp_v3_scale(t.emission, 1.0f - with_color);
+    return t;
+}
+
+/* Colour and emission, each by how much of it is seen. */
+HDRP_FN hdrp_oit_targets hdrp_i_oit_added(hdrp_oit_fragment f, float weight, float seen,
+                                          float scale)
+{
+    hdrp_oit_targets t;
+    float w = hdrp_clamp(weight, 0.0f, 3000.0f);
+    float s = hdrp_i_oit_scale(scale);
+    hdrp_v3 emission = hdrp_v3_scale(f.emission, s * seen);
+    /* A weight that goes down with its colour leaves the colour of the fragment what it is. */
+    w *= hdrp_i_oit_limit(hdrp_v3_max_component(f.premultiplied) * (w * s), f.alpha * w);
+    t.accum = hdrp_v4_from_v3(hdrp_v3_scale(f.premultiplied, w * s), f.alpha * w);
+    emission = hdrp_v3_scale(emission, hdrp_i_oit_limit(hdrp_v3_max_component(emission), 0.0f));
+    t.light = hdrp_v4_from_v3(emission, f.alpha);
+    return t;
+}
+
 /** What a fragment adds to the targets with any weight.
  *  f        valid
  *  weight   any    limited to [0,3000]
@@ -244,22 +296,15 @@ HDRP_FN float hdrp_oit_weight(float z_view, float alpha)
  *  error    none: a definition
  *  source   McGuire and Bavoil 2013, "Weighted Blended Order-Independent Transparency", eq. 6, with
  *           emission in a target of its own
- *  note     revealage in a half float does not notice an alpha below 2^-12, nor in 8 bits one below
- *           2^-9, and a small one is rounded to their steps, with its colour: what is bright and
- *           hardly covers, as highlights on clear glass, is emission. Sums stop to grow where a
- *           layer adds less than 2^-12 of them */
+ *  note     a share of 1 - (1 - alpha)^4 of emission goes with the colour. The rest is divided by
+ *           what hdrp_oit_composite will multiply it by if nothing else covers. Revealage in a half
+ *           float does not notice an alpha below 2^-12, nor in 8 bits one below 2^-9, and a small
+ *           one is rounded to their steps, with its colour: below HDRP_OIT_THIN_ALPHA that goes
+ *           with emission. Sums stop to grow where a layer adds less than 2^-12 of them */
 HDRP_FN hdrp_oit_targets hdrp_oit_weighted_export(hdrp_oit_fragment f, float weight, float scale)
 {
-    hdrp_oit_targets t;
-    float w = hdrp_clamp(weight, 0.0f, 3000.0f);
-    float s = hdrp_i_oit_scale(scale);
-    hdrp_v3 emission = hdrp_v3_scale(f.emission, s);
-    /* A weight that goes down with its colour leaves the colour of the fragment what it is. */
-    w *= hdrp_i_oit_limit(hdrp_v3_max_component(f.premultiplied) * (w * s), f.alpha * w);
-    t.accum = hdrp_v4_from_v3(hdrp_v3_scale(f.premultiplied, w * s), f.alpha * w);
-    emission = hdrp_v3_scale(emission, hdrp_i_oit_limit(hdrp_v3_max_component(emission), 0.0f));
-    t.light = hdrp_v4_from_v3(emission, f.alpha);
-    return t;
+    return hdrp_i_oit_added(hdrp_i_oit_shared(f), weight, hdrp_i_oit_dimming(1.0f - f.alpha),
+                            scale);
 }
 
 /** What a fragment adds to the targets: the recommended single pass.
@@ -292,16 +337,6 @@ HDRP_FN hdrp_v3 hdrp_i_oit_composite(hdrp_oit_targets t, hdrp_v3 behind, float s
     return hdrp_v3_mad(covered, added, lit * inverse);
 }
 
-/* Mean transmittance over the depth of what absorbs evenly and lets r through: (1 - r) / -ln r. */
-HDRP_FN float hdrp_i_oit_mean_through(float r)
-{
-    float limited = hdrp_clamp(r, 1.52587890625e-5f, 1.0f);
-    float d = 1.0f - limited;
-    float near_1 = 1.0f + d * (0.5f + d * (0.333333333f + d * (0.25f + d * 0.2f)));
-    float far_from_1 = -0.69314718f * hdrp_log2(hdrp_min(limited, 0.9f)) / hdrp_max(d, 0.1f);
-    return 1.0f / (d < 0.1f ? near_1 : far_from_1);
-}
-
 /** Colour of a pixel of weighted sums.
  *  t        any    what its targets hold
  *  behind   any    colour of what is opaque
@@ -315,7 +350,7 @@ HDRP_FN float hdrp_i_oit_mean_through(float r)
  *           depth of what absorbs evenly and leaves a revealage of r, at least 2^-16 */
 HDRP_FN hdrp_v3 hdrp_oit_composite(hdrp_oit_targets t, hdrp_v3 behind, float scale)
 {
-    return hdrp_i_oit_composite(t, behind, scale, hdrp_i_oit_mean_through(t.light.w));
+    return hdrp_i_oit_composite(t, behind, scale, 1.0f / hdrp_i_oit_dimming(t.light.w));
 }
 
 /** The sums of two layers of different resolution, or of two streams of fragments.
@@ -573,17 +608,15 @@ HDRP_FN float hdrp_i_oit_through(float x)
  *  scale    any    as for hdrp_oit_export
  *  returns  valid
  *  edges    as hdrp_oit_weighted_export: a colour times scale above HDRP_OIT_PRODUCT_MAX counts
- *           less beside others, so that scale is for scenes whose layers are that bright
+ *           less beside others, so that scale is for scenes whose layers are that bright; below
+ *           HDRP_OIT_THIN_ALPHA colour is added as emission is
  *  error    none: a definition
  *  source   Muenstermann et al. 2018, "Moment-Based Order-Independent Transparency", section on
  *           compositing, with emission in a target of its own */
 HDRP_FN hdrp_oit_targets hdrp_oit_layer_export(hdrp_oit_fragment f, float through, float scale)
 {
     float seen = hdrp_saturate(through);
-    hdrp_oit_targets t = hdrp_oit_weighted_export(f, seen, scale);
-    hdrp_v3 light = hdrp_v3_scale(hdrp_v3_from_v4(t.light), seen);
-    t.light = hdrp_v4_from_v3(light, f.alpha);
-    return t;
+    return hdrp_i_oit_added(hdrp_i_oit_thin(f), seen, seen, scale);
 }
 
 /** Colour of a pixel whose fragments were seen through a known transmittance.
@@ -798,11 +831,12 @@ HDRP_FN float hdrp_i_oit_ratio(float a, float b)
     return hdrp_clamp(b < 0.0f ? -a / magnitude : a / magnitude, -1e18f, 1e18f);
 }
 
-/* Which part of the most that can be absorbed at a depth counts as before it: half of what is not
- * the fragment itself. inverse is one over that most, own what the fragment absorbs, as shares. */
+/* Which part of the most that can be absorbed at a depth counts as before it: about half of what is
+ * not the fragment itself. Both factors are fitted, as the most is seldom reached. inverse is one
+ * over that most, own what the fragment absorbs, as shares. */
 HDRP_FN float hdrp_i_oit_overestimation(float inverse, float own)
 {
-    return 0.5f * hdrp_saturate(1.0f - own * inverse);
+    return 0.55f * hdrp_saturate(1.0f - 1.3f * own * inverse);
 }
 
 /* Share that is absorbed before x by four moments m, which are biased; own is of the fragment. */
@@ -917,15 +951,17 @@ HDRP_FN float hdrp_i_oit_biased(float sum, float inverse, float even, float bias
  *  error    none: an estimate; tests/oit measures pixels against sorting
  *  source   Muenstermann et al. 2018, "Moment-Based Order-Independent Transparency", algorithms for
  *           four and six power moments with the bias of 32-bit floats
- *  note     overestimation is half of what is not the fragment's own, where theirs is a quarter of
- *           all: that is a third or more of the error less. The bias is four times theirs, so that
- *           noise in the last bits of sums counts less: where all depths behind the nearest are
- *           within a thousandth of each other, the order of fragments still changes up to 0.1 */
+ *  note     overestimation is about half of what is not the fragment's own, where theirs is a
+ *           quarter of all: that is a third or more of the error less. The bias is what they give
+ *           six moments of 16 bits, and twice what they give four, so that noise in the last bits
+ *           of sums counts little: where all depths behind the nearest are within a thousandth of
+ *           each other, the order of fragments changes colours up to 0.007, and rounding of sums to
+ *           half floats 0.003 of that */
 HDRP_FN float hdrp_oit_moments_transmittance(hdrp_oit_moments m, hdrp_oit_fragment f,
                                              hdrp_oit_place place, hdrp_u32 count)
 {
     float six = count < 6u ? 0.0f : 1.0f;
-    float bias = six > 0.0f ? 2e-5f : 2e-6f;
+    float bias = six > 0.0f ? 6e-4f : 1.2e-4f;
     float inverse = 1.0f / hdrp_clamp(m.high.z, 1e-6f, 1e6f);
     float x = 2.0f * place.unit - 1.0f;
     float front = hdrp_i_oit_front(m.high.w, hdrp_i_oit_absorbed(f.alpha), place);

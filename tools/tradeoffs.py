@@ -626,6 +626,8 @@ OIT_TABLES = {
     "counts": (["low", "mixed", "high", "-10 stops", "-5 stops", "+5 stops", "+10 stops"],
                ["low_32", "mixed_32", "high_32", "stops_-10", "stops_-5", "stops_5", "stops_10"],
                "native"),
+    "shining": (["0.01 to 0.3", "0.05 to 0.95", "0.8 to 0.99", "behind a pane"],
+                ["shining_low", "shining", "shining_high", "pane"], "native"),
     "compact": (["0.05 to 0.3", "0.05 to 0.95", "0.8 to 0.99", "only adds", "half of it adds"],
                 ["low", "mixed", "high", "additive", "half_emissive"], "compact"),
 }
@@ -653,6 +655,16 @@ Other depths, with opacities as above:
 Up to 32 layers; and colours 2^-10 to 2^10 times as bright, relative to that:
 
 {counts}
+Where half of the layers emit up to a colour beside what they cover with, by opacity; and layers of
+0.05 to 0.95 between 50 and 60 m that do not, behind one at 1 m:
+
+{shining}
+- One layer is exact in every mode but `talk`, whatever it covers and emits: what is divided by its
+  own coverage, or seen through it, is so without error. A share of emission that grows with opacity
+  goes with the colour, the rest with what only adds.
+- A pane far before a group leaves all of it to one of the 16 intervals of `wavelet`. Moments have no
+  intervals.
+
 Light in R11G11B10F and coverage in R8 where the first table has RGBA16F for both. What only adds
 is then rounded at each layer:
 
@@ -682,8 +694,8 @@ others nothing transmits (`--features=-refraction`), and love stands behind itse
 {pictures}
 - `mcguire` is `eq7`, `volition` is `talk`. Glass that is black and of one opacity, as that of
   glass-table, needs no order.
-- What covers keeps what it emits in its colour; only what hides nothing goes into the sums of
-  emission. On random layers of which half emit, that is half of the error of the other way.
+- What a glTF material emits is in proportion to its opacity, and a part of its colour; only what
+  hides nothing goes into the sums of emission.
 - Half the resolution costs 1 % at this size, and less in larger pictures. A quarter of it lies along
   silhouettes, over which smoke leaks; the rest is within the smoke, whose billows and shadows blur.
 

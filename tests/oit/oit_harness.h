@@ -25,6 +25,8 @@ typedef struct oit_case {
     double front_alpha; /* 0, or that of the nearest layer */
     double scale_stops; /* of the caller's scale */
     double emission;    /* of layers that emit, over colour times opacity, as of a sprite */
+    double shining;     /* share of layers that cover and emit, up to a colour whatever covers */
+    double pane_m;      /* 0, or the depth of the first layer */
 } oit_case;
 
 typedef struct oit_pixels {

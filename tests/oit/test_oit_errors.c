@@ -63,6 +63,15 @@ static void recommended_holds_on_depths_it_was_not_fitted_on(void** state)
     holds("high_0.1_1000", HDRP_OIT_MODE_RECOMMENDED, 0.18);
 }
 
+/* A third less than with all emission in sums of its own. */
+static void recommended_shares_what_covers_and_emits(void** state)
+{
+    (void)state;
+    holds("shining_low", HDRP_OIT_MODE_RECOMMENDED, 0.17);
+    holds("shining", HDRP_OIT_MODE_RECOMMENDED, 0.26);
+    holds("shining_high", HDRP_OIT_MODE_RECOMMENDED, 0.18);
+}
+
 static void recommended_is_the_same_at_every_exposure(void** state)
 {
     (void)state;
@@ -90,6 +99,11 @@ static void better_modes_are_as_good_as_promised(void** state)
         }
         holds("half_emissive", better[i], 0.03);
     }
+    holds("shining_low", HDRP_OIT_MODE_WAVELET, 0.03);
+    holds("shining_low", HDRP_OIT_MODE_MOMENTS_6, 0.035);
+    holds("shining_high", HDRP_OIT_MODE_WAVELET, 0.02);
+    holds("shining_high", HDRP_OIT_MODE_MOMENTS_6, 0.02);
+    holds("pane", HDRP_OIT_MODE_MOMENTS_6, 0.05);
     holds("low", HDRP_OIT_MODE_MOMENTS_4, 0.006);
     holds("mixed", HDRP_OIT_MODE_MOMENTS_4, 0.032);
     holds("high", HDRP_OIT_MODE_MOMENTS_4, 0.060);
@@ -214,6 +228,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(recommended_is_as_good_as_promised),
         cmocka_unit_test(recommended_holds_on_depths_it_was_not_fitted_on),
+        cmocka_unit_test(recommended_shares_what_covers_and_emits),
         cmocka_unit_test(recommended_is_the_same_at_every_exposure),
         cmocka_unit_test(better_modes_are_as_good_as_promised),
         cmocka_unit_test(a_front_apart_is_worth_a_pass_of_depth),
