@@ -701,6 +701,12 @@ static void exports_go_by_their_weights(void** state)
     assert_true(fabsf(a.light.y - 2.0f * logf(2.0f) / 8.0f) <= 1e-6f && a.light.w == 0.5f);
     assert_true(c.accum.x == 0.125f && c.accum.w == 0.125f && c.light.y == 0.25f);
     assert_true(d.light.x == 0.5f && d.light.w == 0.125f);
+    /* From 2^-7 on alpha carries the colour. */
+    assert_true(hdrp_oit_export(fragment(v3(1, 1, 1), v3(0, 0, 0), 0x1p-7f, 1.0f), 1.0f).accum.x >
+                0.0f);
+    assert_true(
+        hdrp_oit_export(fragment(v3(1, 1, 1), v3(0, 0, 0), 0x1.fffp-8f, 1.0f), 1.0f).accum.x ==
+        0.0f);
     /* A colour behind a scale comes back. */
     a.light.w = 0.5f;
     assert_color(hdrp_oit_composite(a, v3(0, 0, 0), 2.0f), v3(0.5f, 0.25f + 1.0f, 0.0f), 1e-6);
