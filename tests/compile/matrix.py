@@ -7,10 +7,10 @@ compiles them; a new header is covered by existing. One that includes a Vulkan h
 where there is none. Groups:
 
     c_gcc c_clang cxx_gcc cxx_clang
-             each header alone and twice in the first and the last standard, without and with its
-             implementation; all of them forwards and backwards; before and after <math.h> and
-             <vulkan/vulkan.h>; after the macros of <windows.h>. gcc also optimises C and keeps
-             every function, for its flow warnings
+             each header, and again behind itself, in the first and the last standard, without and
+             with its implementation; all of them forwards and backwards; before and after
+             <math.h> and <vulkan/vulkan.h>; after the macros of <windows.h>. gcc also optimises C
+             and keeps every function, for its flow warnings
     m32      each header for a 32-bit target
     link     two translation units, C and C++ mixed, one with the implementations: linked and run
     glsl glsl_es hlsl
@@ -143,11 +143,12 @@ class Matrix:
         return Job(f"{name} as {standard} with {compiler}", {source: text}, [command])
 
     def alone(self, header):
-        """name -> source: what is tried in every standard."""
+        """name -> source: what is tried in every standard. One that includes the header again
+        begins with the header by itself."""
         stem = header.stem
         include = f'#include "{header.name}"\n'
         define = self.define(header)
-        texts = {f"{stem}-alone": include, f"{stem}-twice": include + define + include + include}
+        texts = {f"{stem}-twice": include + define + include + include}
         if define:
             texts[f"{stem}-implementation"] = define + include
         return texts
@@ -277,7 +278,7 @@ class Matrix:
         if language == "glsl_es":
             # Linking instead of -V applies the rules of OpenGL ES itself, not those of Vulkan.
             commands.append(["glslangValidator", "-l", f"-I{self.include}", source])
-        if calls_all and not self.brief:  # the text of formulas is the same in all files
+        if calls_all:
             metal, hlsl, glsl = (self.out / f"{name}.{s}"
                                  for s in ("metal", "out.hlsl", f"out.{stage}"))
             version = ["--version", "450"]
@@ -303,10 +304,10 @@ class Matrix:
         stages = stages[:1] if self.brief else stages
         define = "HDRP_HLSL" if language == "hlsl" else "GL_core_profile"
         for header in self.for_shaders():
-            functions = self.shared_functions(header, define)
-            body = calls.text(functions, self.headers)
-            jobs += [self.shader_job(language, stage, header.stem, [header.name], body, True)
-                     for stage in stages]
+            if not self.brief:  # the text of formulas is the same in all files
+                body = calls.text(self.shared_functions(header, define), self.headers)
+                jobs += [self.shader_job(language, stage, header.stem, [header.name], body, True)
+                         for stage in stages]
             jobs.append(self.shader_job(language, stages[0], f"{header.stem}-twice",
                                         [header.name, header.name]))
         if self.full or language != "glsl_es":
