@@ -12,8 +12,8 @@
  * behind what is opaque, the passes of the mode: each in a render pass of its own with the targets
  * of that pass, cleared, and the depth of what is opaque, which is tested and not written. Their
  * fragment shaders include shaders/oit_output.glsl. Between them what was written is to be seen by
- * fragment shaders, after the last one by compute shaders. Targets have one sample: what a pass left
- * is read at the pixel. Then
+ * fragment shaders, after the last one by compute shaders. Targets have one sample: what a pass
+ * left is read at the pixel. Then
  *
  *     hdrp_gpu_vk_oit_composite(&gpu, commands, &oit);
  *

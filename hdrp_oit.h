@@ -41,8 +41,8 @@
  *   published weights: weight_eq7 weight_eq8 weight_eq9 weight_eq10 weight_2015
  *   recommended: weight weighted_export export composite merge
  *   talk: talk_settings_make talk_weight talk_export talk_composite talk_merge
- *   modes: mode_weight
- *   places: range_export place_of layer_export layer_composite
+ *   modes: mode_weight mode_export
+ *   places: range_export nearest_of place_of layer_export layer_composite
  *   front: front_export front_composite
  *   wavelet: wavelet_insert wavelet_transmittance
  *   moments: moments_insert moments_transmittance
@@ -62,9 +62,9 @@
 
 #define HDRP_OIT_LIGHT_MAX   65504.0f /* largest half float: colours are limited to it */
 #define HDRP_OIT_PRODUCT_MAX 2047.0f  /* of a colour and its weight: 32 of them fit a half float */
-#define HDRP_OIT_THIN_ALPHA  0.0078125f /* 2^-7: below it a colour is added as emission is */
-#define HDRP_OIT_DEPTH_MIN   1e-6f      /* m */
-#define HDRP_OIT_DEPTH_MAX   1e6f       /* m; infinity counts as it */
+#define HDRP_OIT_THIN_ALPHA  0.001953125f /* 2^-9: below it colours are added as emission is */
+#define HDRP_OIT_DEPTH_MIN   1e-6f        /* m */
+#define HDRP_OIT_DEPTH_MAX   1e6f         /* m; infinity counts as it */
 
 /* What a surface does to a pixel. Made by hdrp_oit_fragment_make. */
 struct hdrp_oit_fragment {
@@ -215,24 +215,26 @@ HDRP_FN float hdrp_oit_weight_2015(float device_depth, float alpha)
 
 /* >>recommended */
 
-/** The recommended weight: how much of a fragment is seen, in the mean over pixels that hold it.
+/** The recommended weight: about how much of a fragment is seen beside others.
  *  z_view   any    m
  *  alpha    any    limited to [0,1]
- *  returns  [6.1e-5,1] from 2^-14, the smallest normal half float
+ *  returns  [9.765625e-4,16] from 2^-10
  *  edges    depth is limited to [HDRP_OIT_DEPTH_MIN,HDRP_OIT_DEPTH_MAX]; NaN counts as the least
  *  error    <= 3e-6 relative  @accuracy oit_weight
  *  source   own fit by tools/fit_oit.py
  *  note     a power of depth, so that units matter little: hardly any for thin fragments, whose
- *           order matters little, up to the -2.6th for dense ones */
+ *           order matters little, up to the -2nd for dense ones. Thin ones weigh little, or soft
+ *           edges before something dense would take its colour */
 HDRP_FN float hdrp_oit_weight(float z_view, float alpha)
 {
     float a = hdrp_saturate(alpha);
     float x = hdrp_log2(hdrp_clamp(z_view, HDRP_OIT_DEPTH_MIN, HDRP_OIT_DEPTH_MAX));
     float a2 = a * a;
     float a4 = a2 * a2;
-    float level = -5.8876f - 2.7949f * a + 15.0535f * a2 - 6.1724f * a4;
-    float slope = 0.3094f - 0.9741f * a + 3.9349f * a2 - 0.6661f * (a4 * a4);
-    return hdrp_exp2(hdrp_clamp(level - slope * x, -14.0f, 0.0f));
+    float root = hdrp_sqrt(a);
+    float level = -7.2936f - 1.4768f * root - 0.7362f * a + 19.4126f * a2 - 9.3971f * a4;
+    float slope = 0.48f - 1.3173f * root + 1.3864f * a + 2.3104f * a2 - 0.889f * (a4 * a4);
+    return hdrp_exp2(hdrp_clamp(level - slope * x, -10.0f, 4.0f));
 }
 
 /* One over the mean transmittance over the depth of what absorbs evenly and lets r through:
@@ -296,15 +298,13 @@ HDRP_FN hdrp_oit_targets hdrp_i_oit_added(hdrp_oit_fragment f, float weight, flo
  *  error    none: a definition
  *  source   McGuire and Bavoil 2013, "Weighted Blended Order-Independent Transparency", eq. 6, with
  *           emission in a target of its own
- *  note     a share of 1 - (1 - alpha)^4 of emission goes with the colour. The rest is divided by
- *           what hdrp_oit_composite will multiply it by if nothing else covers. Revealage in a half
- *           float does not notice an alpha below 2^-12, nor in 8 bits one below 2^-9, and a small
- *           one is rounded to their steps, with its colour: below HDRP_OIT_THIN_ALPHA that goes
- *           with emission. Sums stop to grow where a layer adds less than 2^-12 of them */
+ *  note     emission is divided by what hdrp_oit_composite will multiply it by if nothing else
+ *           covers. Revealage in a half float does not notice an alpha below 2^-12, nor in 8 bits
+ *           one below 2^-9, and a small one is rounded to their steps, with its colour. Sums stop
+ *           to grow where a layer adds less than 2^-12 of them */
 HDRP_FN hdrp_oit_targets hdrp_oit_weighted_export(hdrp_oit_fragment f, float weight, float scale)
 {
-    return hdrp_i_oit_added(hdrp_i_oit_shared(f), weight, hdrp_i_oit_dimming(1.0f - f.alpha),
-                            scale);
+    return hdrp_i_oit_added(f, weight, hdrp_i_oit_dimming(1.0f - f.alpha), scale);
 }
 
 /** What a fragment adds to the targets: the recommended single pass.
@@ -312,16 +312,18 @@ HDRP_FN hdrp_oit_targets hdrp_oit_weighted_export(hdrp_oit_fragment f, float wei
  *  scale    any    power of 2 that colours are multiplied by; limited to [2^-20,2^20]
  *  returns  valid
  *  edges    as hdrp_oit_weighted_export
- *  error    none: hdrp_oit_weighted_export of hdrp_oit_weight
+ *  error    none: hdrp_oit_weighted_export of hdrp_oit_weight, with light moved between sums
  *  source   McGuire and Bavoil 2013, "Weighted Blended Order-Independent Transparency", eq. 6, with
  *           an own weight and emission in a target of its own
  *  note     the defects of the talk's form are gone: sums are divided by those of alpha times
  *           weight, so that n equal layers cover as n layers do; emission has a float target, so
  *           that there may be more than eight additive layers; products are small enough for 32
- *           fragments */
+ *           fragments. A share of 1 - (1 - alpha)^4 of emission goes with the colour, and below
+ *           HDRP_OIT_THIN_ALPHA all of the colour with emission */
 HDRP_FN hdrp_oit_targets hdrp_oit_export(hdrp_oit_fragment f, float scale)
 {
-    return hdrp_oit_weighted_export(f, hdrp_oit_weight(f.z_view, f.alpha), scale);
+    return hdrp_oit_weighted_export(hdrp_i_oit_shared(f), hdrp_oit_weight(f.z_view, f.alpha),
+                                    scale);
 }
 
 /* Mean colour of what covers, what was added, and what shines through. */
@@ -537,28 +539,72 @@ HDRP_FN float hdrp_oit_mode_weight(hdrp_u32 mode, hdrp_oit_fragment f, float dev
     return w;
 }
 
+/** What a fragment adds to the targets in a mode of one pass, but for HDRP_OIT_MODE_TALK.
+ *  mode          any    HDRP_OIT_MODE_...
+ *  f             valid
+ *  device_depth  any    as for hdrp_oit_mode_weight
+ *  s             valid  as for hdrp_oit_mode_weight
+ *  scale         any    as for hdrp_oit_export
+ *  returns       valid
+ *  edges         as hdrp_oit_weighted_export and hdrp_oit_mode_weight
+ *  error         none: a selection
+ *  source        a definition */
+HDRP_FN hdrp_oit_targets hdrp_oit_mode_export(hdrp_u32 mode, hdrp_oit_fragment f,
+                                              float device_depth, hdrp_oit_talk_settings s,
+                                              float scale)
+{
+    hdrp_oit_targets t;
+    if (mode == HDRP_OIT_MODE_RECOMMENDED) {
+        t = hdrp_oit_export(f, scale);
+    } else {
+        t = hdrp_oit_weighted_export(f, hdrp_oit_mode_weight(mode, f, device_depth, s), scale);
+    }
+    return t;
+}
+
 /* >>places
  * Where a fragment is among those of its pixel. The nearest one is known from the range of depths,
- * so that what it absorbs is kept apart and counted exactly: it matters most. */
+ * so that what it absorbs is kept apart and counted exactly: it matters most. It is the nearest of
+ * HDRP_OIT_FRONT_ALPHA or more, as the edge of a sprite is before much and hides nothing. */
+
+#define HDRP_OIT_FRONT_ALPHA 0.1f
+#define HDRP_OIT_THINNER     8796093022208.0f   /* 2^43: depths of thinner ones are so much less */
+#define HDRP_OIT_NOTHING     8796093022208.0e6f /* depth of what covers nothing: the farthest */
 
 /* Made by hdrp_oit_place_of. */
 struct hdrp_oit_place {
     float unit;   /* [0,1] logarithm of depth within the range */
-    float behind; /* 1: behind the nearest fragment that covers; 0: at its depth or before it */
+    float behind; /* 1: behind the nearest fragment; 0: at its depth or before it */
     float front;  /* 1: at its depth */
+    float beyond; /* 1: behind all that covers */
 };
 HDRP_TYPEDEF(hdrp_oit_place)
 
 /** What a fragment writes to the target of ranges, which keeps the maximum.
  *  f        valid
- *  returns  [-1e6,1e6] x -depth, y depth, m
- *  edges    what covers nothing writes what the target was cleared to: (-HDRP_OIT_DEPTH_MAX, 0)
+ *  returns  [-8.8e18,1e6] x -depth, y depth, m; x times 2^43 below HDRP_OIT_FRONT_ALPHA, so that
+ *           they are the nearest where nothing denser is
+ *  edges    what covers nothing writes what the target was cleared to: (-HDRP_OIT_NOTHING, 0)
  *  error    none: a selection
  *  source   a definition */
 HDRP_FN hdrp_v2 hdrp_oit_range_export(hdrp_oit_fragment f)
 {
-    return hdrp_v2_make(f.alpha > 0.0f ? -f.z_view : -HDRP_OIT_DEPTH_MAX,
+    float nearest = f.alpha < HDRP_OIT_FRONT_ALPHA ? f.z_view * HDRP_OIT_THINNER : f.z_view;
+    return hdrp_v2_make(f.alpha > 0.0f ? -nearest : -HDRP_OIT_NOTHING,
                         f.alpha > 0.0f ? f.z_view : 0.0f);
+}
+
+/** The depth of the nearest fragment.
+ *  range    any    what the target of ranges holds; y is not looked at
+ *  returns  [1e-6,1e6] m
+ *  edges    nothing that covers: HDRP_OIT_DEPTH_MAX; NaN: HDRP_OIT_DEPTH_MIN
+ *  error    none: a selection
+ *  source   a definition */
+HDRP_FN float hdrp_oit_nearest_of(hdrp_v2 range)
+{
+    float m = -range.x;
+    float depth = m > HDRP_OIT_DEPTH_MAX ? m * (1.0f / HDRP_OIT_THINNER) : m;
+    return hdrp_clamp(depth, HDRP_OIT_DEPTH_MIN, HDRP_OIT_DEPTH_MAX);
 }
 
 /** The place of a fragment.
@@ -572,13 +618,14 @@ HDRP_FN hdrp_v2 hdrp_oit_range_export(hdrp_oit_fragment f)
 HDRP_FN hdrp_oit_place hdrp_oit_place_of(hdrp_oit_fragment f, hdrp_v2 range)
 {
     hdrp_oit_place p;
-    float nearest = hdrp_clamp(-range.x, HDRP_OIT_DEPTH_MIN, HDRP_OIT_DEPTH_MAX);
+    float nearest = hdrp_oit_nearest_of(range);
     float farthest = hdrp_clamp(range.y, nearest, HDRP_OIT_DEPTH_MAX);
     float extent = hdrp_log2(farthest / nearest);
     float at = hdrp_log2(hdrp_clamp(f.z_view, nearest, farthest) / nearest);
     p.unit = hdrp_saturate(at / hdrp_max(extent, 1e-6f));
     p.behind = f.z_view > nearest ? 1.0f : 0.0f;
     p.front = f.z_view == nearest ? 1.0f : 0.0f;
+    p.beyond = f.z_view > farthest ? 1.0f : 0.0f;
     return p;
 }
 
@@ -588,18 +635,35 @@ HDRP_FN float hdrp_i_oit_absorbed(float alpha)
     return -0.69314718f * hdrp_log2(hdrp_clamp(1.0f - alpha, 1.52587890625e-5f, 1.0f));
 }
 
-/* What the nearest fragments absorb before a place: all of it, or half of the others. Limited, as
- * many at one depth would all be hidden, and their weights vanish in half floats. */
-HDRP_FN float hdrp_i_oit_front(float front, float own, hdrp_oit_place p)
-{
-    float others = p.front * hdrp_clamp(0.5f * (front - own), 0.0f, 4.0f);
-    return hdrp_max(front, 0.0f) * p.behind + others;
-}
-
 /* e to the power -x for a sum that a target holds. */
 HDRP_FN float hdrp_i_oit_through(float x)
 {
     return hdrp_saturate(hdrp_exp2(-1.44269504f * hdrp_clamp(x, 0.0f, 100.0f)));
+}
+
+/* What is seen, in the mean, through something that absorbs x and is before the fragment with a
+ * chance. The exponential of the mean would be much less where it is dense: nothing of layers of
+ * which each is before the others half of the time. */
+HDRP_FN float hdrp_i_oit_perhaps_through(float x, float chance)
+{
+    return 1.0f - chance * (1.0f - hdrp_i_oit_through(x));
+}
+
+/* What is seen through the nearest fragment and thinner ones before it. At its depth the others are
+ * thinner ones, which are before it, or share the depth, of which each is before it half of the
+ * time: three quarters are between. */
+HDRP_FN float hdrp_i_oit_front(float front, float own, hdrp_oit_place p)
+{
+    /* A half float of the sum may be 2^-11 more than what the fragment itself absorbs. */
+    float x = p.behind > 0.0f ? front : front * 0.9990234375f - own;
+    return hdrp_i_oit_perhaps_through(x, p.behind > 0.0f ? 1.0f : 0.75f * p.front);
+}
+
+/* What is seen through the fragments behind the nearest, by where the fragment is. */
+HDRP_FN float hdrp_i_oit_tail(float within, float all, hdrp_oit_place p)
+{
+    float through = p.beyond > 0.0f ? hdrp_i_oit_through(all) : within;
+    return p.behind > 0.0f ? through : 1.0f;
 }
 
 /** What a fragment adds to the targets where it is seen through a known transmittance.
@@ -647,7 +711,7 @@ HDRP_TYPEDEF(hdrp_oit_front_targets)
 
 /** What a fragment adds to the targets where the nearest one is kept apart.
  *  f          valid
- *  nearest_m  any    least depth of what covers in the pixel: hdrp_oit_range_export, blended
+ *  nearest_m  any    hdrp_oit_nearest_of what the target of ranges holds
  *  scale      any    as for hdrp_oit_export
  *  returns    valid
  *  edges      what is before the nearest depth counts as at it; NaN: nothing is nearest; colours
@@ -701,6 +765,8 @@ HDRP_FN hdrp_v3 hdrp_oit_front_composite(hdrp_oit_front_targets t, hdrp_v3 behin
  * halves: no coefficient is negative, and half floats suffice. */
 
 #define HDRP_OIT_WAVELET_BINS 16u
+#define HDRP_OIT_WAVELET_SPAN                                                                      \
+    15.5f /* of them: the farthest fragment is in the middle of the last */
 
 /* Additive targets: four RGBA16F and an R16F. */
 struct hdrp_oit_wavelet {
@@ -727,7 +793,7 @@ HDRP_FN float hdrp_i_oit_of(hdrp_v4 v, hdrp_u32 index)
 
 HDRP_FN hdrp_u32 hdrp_i_oit_bin(float unit)
 {
-    hdrp_u32 bin = hdrp_u32_from_f32(hdrp_saturate(unit) * 16.0f);
+    hdrp_u32 bin = hdrp_u32_from_f32(hdrp_saturate(unit) * HDRP_OIT_WAVELET_SPAN);
     return bin < 15u ? bin : 15u;
 }
 
@@ -743,7 +809,7 @@ HDRP_FN hdrp_oit_wavelet hdrp_oit_wavelet_insert(hdrp_oit_fragment f, hdrp_oit_p
 {
     hdrp_oit_wavelet w;
     float absorbed = hdrp_i_oit_absorbed(f.alpha);
-    float tail = place.front > 0.0f ? 0.0f : absorbed;
+    float tail = place.behind > 0.0f ? absorbed : 0.0f;
     hdrp_u32 bin = hdrp_i_oit_bin(place.unit);
     hdrp_v4 quarters = hdrp_i_oit_in(bin >> 3u, (bin & 4u) == 0u ? tail : 0.0f);
     hdrp_v4 finest = hdrp_i_oit_in((bin >> 1u) & 3u, (bin & 1u) == 0u ? tail : 0.0f);
@@ -777,19 +843,18 @@ HDRP_FN float hdrp_oit_wavelet_transmittance(hdrp_oit_wavelet w, hdrp_oit_fragme
 {
     hdrp_u32 bin = hdrp_i_oit_bin(place.unit);
     float own = hdrp_i_oit_absorbed(f.alpha);
-    float fraction = hdrp_saturate(place.unit * 16.0f - hdrp_f32_from_u32(bin));
+    float fraction = hdrp_saturate(place.unit * HDRP_OIT_WAVELET_SPAN - hdrp_f32_from_u32(bin));
     float quarter = bin < 8u ? w.coarse.z : w.coarse.w;
     hdrp_u32 pair = (bin >> 1u) & 3u;
     float finest =
         bin < 8u ? hdrp_i_oit_of(w.finest_low, pair) : hdrp_i_oit_of(w.finest_high, pair);
     hdrp_v2 s = hdrp_i_oit_descend(hdrp_v2_make(0.0f, w.coarse.x), w.coarse.y, bin & 8u);
-    float others;
+    float tail;
     s = hdrp_i_oit_descend(s, quarter, bin & 4u);
     s = hdrp_i_oit_descend(s, hdrp_i_oit_of(w.eighths, bin >> 2u), bin & 2u);
     s = hdrp_i_oit_descend(s, finest, bin & 1u);
-    others = hdrp_max(s.y - own, 0.0f) * fraction;
-    return hdrp_i_oit_through(hdrp_i_oit_front(w.front, own, place) +
-                              place.behind * (s.x + others));
+    tail = hdrp_i_oit_through(s.x) * hdrp_i_oit_perhaps_through(s.y - own, fraction);
+    return hdrp_i_oit_front(w.front, own, place) * hdrp_i_oit_tail(tail, w.coarse.x, place);
 }
 
 /* >>moments
@@ -815,7 +880,7 @@ HDRP_FN hdrp_oit_moments hdrp_oit_moments_insert(hdrp_oit_fragment f, hdrp_oit_p
 {
     hdrp_oit_moments m;
     float absorbed = hdrp_i_oit_absorbed(f.alpha);
-    float tail = place.front > 0.0f ? 0.0f : absorbed;
+    float tail = place.behind > 0.0f ? absorbed : 0.0f;
     float x = 2.0f * place.unit - 1.0f;
     float x2 = x * x;
     float x3 = x2 * x;
@@ -831,16 +896,9 @@ HDRP_FN float hdrp_i_oit_ratio(float a, float b)
     return hdrp_clamp(b < 0.0f ? -a / magnitude : a / magnitude, -1e18f, 1e18f);
 }
 
-/* Which part of the most that can be absorbed at a depth counts as before it: about half of what is
- * not the fragment itself. Both factors are fitted, as the most is seldom reached. inverse is one
- * over that most, own what the fragment absorbs, as shares. */
-HDRP_FN float hdrp_i_oit_overestimation(float inverse, float own)
-{
-    return 0.55f * hdrp_saturate(1.0f - 1.3f * own * inverse);
-}
-
-/* Share that is absorbed before x by four moments m, which are biased; own is of the fragment. */
-HDRP_FN float hdrp_i_oit_before_4(hdrp_v4 m, float x, float own)
+/* By four moments m, which are biased, x the share that is absorbed before a place and y at it, at
+ * most. */
+HDRP_FN hdrp_v2 hdrp_i_oit_before_4(hdrp_v4 m, float x)
 {
     float l21_d = m.z - m.x * m.y;
     float d1 = hdrp_max(m.y - m.x * m.x, 1e-8f);
@@ -850,18 +908,21 @@ HDRP_FN float hdrp_i_oit_before_4(hdrp_v4 m, float x, float own)
     float c2 = (x * x - m.y - l21 * y1) / d2;
     float c1 = y1 / d1 - l21 * c2;
     float c0 = 1.0f - c1 * m.x - c2 * m.y;
-    float p = hdrp_i_oit_ratio(c1, c2) * 0.5f;
-    float root = hdrp_sqrt(hdrp_max(p * p - hdrp_i_oit_ratio(c0, c2), 0.0f));
-    float a = -p - root;
-    float b = -p + root;
+    /* Roots of c0 + c1 t + c2 t^2 without the difference that cancels where one is far off. */
+    float root = hdrp_sqrt(hdrp_max(c1 * c1 - 4.0f * c0 * c2, 0.0f));
+    float q = -0.5f * (c1 + (c1 < 0.0f ? -root : root));
+    float r1 = hdrp_i_oit_ratio(q, c2);
+    float r2 = hdrp_i_oit_ratio(c0, q);
+    float a = hdrp_min(r1, r2);
+    float b = hdrp_max(r1, r2);
     float fa = a < x ? 1.0f : 0.0f;
     float fb = b < x ? 1.0f : 0.0f;
-    /* Newton's polynomial through f at x and the steps at the roots, in its mean. */
-    float f = hdrp_i_oit_overestimation(c0 + x * (c1 + x * c2), own);
-    float xa = hdrp_i_oit_ratio(fa - f, a - x);
+    /* Newton's polynomial through 0 at x and the steps at the roots, in its mean. */
+    float xa = hdrp_i_oit_ratio(fa, a - x);
     float ab = hdrp_i_oit_ratio(fb - fa, b - a);
     float xab = hdrp_i_oit_ratio(ab - xa, b - x);
-    return hdrp_saturate(f + xa * (m.x - x) + xab * (m.y - (x + a) * m.x + x * a));
+    float before = xa * (m.x - x) + xab * (m.y - (x + a) * m.x + x * a);
+    return hdrp_v2_make(hdrp_saturate(before), 1.0f / hdrp_max(c0 + x * (c1 + x * c2), 1.0f));
 }
 
 /* The roots of c0 + c1 t + c2 t^2 + c3 t^3, three real ones, of which none is far off. */
@@ -893,13 +954,13 @@ HDRP_FN hdrp_v3 hdrp_i_oit_cubic(float c0, float c1, float c2, float c3)
                         turned > 0.0f ? hdrp_i_oit_ratio(1.0f, r.z) : r.z);
 }
 
-/* Newton's polynomial through f at x and the steps at three roots, in its mean. */
-HDRP_FN float hdrp_i_oit_steps(hdrp_v3 m, float x, float f, hdrp_v3 roots)
+/* Newton's polynomial through 0 at x and the steps at three roots, in its mean. */
+HDRP_FN float hdrp_i_oit_steps(hdrp_v3 m, float x, hdrp_v3 roots)
 {
     float f1 = roots.x < x ? 1.0f : 0.0f;
     float f2 = roots.y < x ? 1.0f : 0.0f;
     float f3 = roots.z < x ? 1.0f : 0.0f;
-    float f01 = hdrp_i_oit_ratio(f1 - f, roots.x - x);
+    float f01 = hdrp_i_oit_ratio(f1, roots.x - x);
     float f12 = hdrp_i_oit_ratio(f2 - f1, roots.y - roots.x);
     float f23 = hdrp_i_oit_ratio(f3 - f2, roots.z - roots.y);
     float f012 = hdrp_i_oit_ratio(f12 - f01, roots.y - x);
@@ -909,11 +970,11 @@ HDRP_FN float hdrp_i_oit_steps(hdrp_v3 m, float x, float f, hdrp_v3 roots)
     float product = x * roots.x;
     float e2 = m.y - sum * m.x + product;
     float e3 = m.z - (sum + roots.y) * m.y + (product + sum * roots.y) * m.x - product * roots.y;
-    return hdrp_saturate(f + f01 * (m.x - x) + f012 * e2 + f0123 * e3);
+    return hdrp_saturate(f01 * (m.x - x) + f012 * e2 + f0123 * e3);
 }
 
 /* The same by six moments m and h. */
-HDRP_FN float hdrp_i_oit_before_6(hdrp_v4 m, hdrp_v2 h, float x, float own)
+HDRP_FN hdrp_v2 hdrp_i_oit_before_6(hdrp_v4 m, hdrp_v2 h, float x)
 {
     float d1 = hdrp_max(m.y - m.x * m.x, 1e-8f);
     float l21_d = m.z - m.x * m.y;
@@ -931,8 +992,9 @@ HDRP_FN float hdrp_i_oit_before_6(hdrp_v4 m, hdrp_v2 h, float x, float own)
     float c2 = y2 / d2 - l32 * c3;
     float c1 = y1 / d1 - l21 * c2 - l31 * c3;
     float c0 = 1.0f - m.x * c1 - m.y * c2 - m.z * c3;
-    float f = hdrp_i_oit_overestimation(c0 + x * (c1 + x * (c2 + x * c3)), own);
-    return hdrp_i_oit_steps(hdrp_v3_make(m.x, m.y, m.z), x, f, hdrp_i_oit_cubic(c0, c1, c2, c3));
+    float before =
+        hdrp_i_oit_steps(hdrp_v3_make(m.x, m.y, m.z), x, hdrp_i_oit_cubic(c0, c1, c2, c3));
+    return hdrp_v2_make(before, 1.0f / hdrp_max(c0 + x * (c1 + x * (c2 + x * c3)), 1.0f));
 }
 
 /* Moments between their own and those of a distribution that fills the range. */
@@ -940,6 +1002,10 @@ HDRP_FN float hdrp_i_oit_biased(float sum, float inverse, float even, float bias
 {
     return hdrp_lerp(hdrp_clamp(sum * inverse, -1.0f, 1.0f), even, bias);
 }
+
+/* How much of what is absorbed at a place is the fragment's own, over what it absorbs: the most
+ * that moments allow there is seldom reached. Chosen on the pixels of tests/oit. */
+#define HDRP_I_OIT_OWN 1.2f
 
 /** How much of a fragment is seen, by moments.
  *  m        any    what the targets hold, all fragments added
@@ -951,12 +1017,12 @@ HDRP_FN float hdrp_i_oit_biased(float sum, float inverse, float even, float bias
  *  error    none: an estimate; tests/oit measures pixels against sorting
  *  source   Muenstermann et al. 2018, "Moment-Based Order-Independent Transparency", algorithms for
  *           four and six power moments with the bias of 32-bit floats
- *  note     overestimation is about half of what is not the fragment's own, where theirs is a
- *           quarter of all: that is a third or more of the error less. The bias is what they give
- *           six moments of 16 bits, and twice what they give four, so that noise in the last bits
- *           of sums counts little: where all depths behind the nearest are within a thousandth of
- *           each other, the order of fragments changes colours up to 0.007, and rounding of sums to
- *           half floats 0.003 of that */
+ *  note     theirs is the exponential of all that is absorbed before the fragment, and of a quarter
+ *           of what may be at its depth. Here each half of that, without the fragment's own, is
+ *           before it half of the time: the mean of transmittances, not of what is absorbed. The
+ *           bias is what they give six moments of 16 bits, and twice what they give four, so that
+ *           noise in the last bits of sums counts less than their rounding to half floats: the
+ *           order of fragments changes colours up to 0.002 in 32 bits, and 0.004 in 16 */
 HDRP_FN float hdrp_oit_moments_transmittance(hdrp_oit_moments m, hdrp_oit_fragment f,
                                              hdrp_oit_place place, hdrp_u32 count)
 {
@@ -964,7 +1030,8 @@ HDRP_FN float hdrp_oit_moments_transmittance(hdrp_oit_moments m, hdrp_oit_fragme
     float bias = six > 0.0f ? 6e-4f : 1.2e-4f;
     float inverse = 1.0f / hdrp_clamp(m.high.z, 1e-6f, 1e6f);
     float x = 2.0f * place.unit - 1.0f;
-    float front = hdrp_i_oit_front(m.high.w, hdrp_i_oit_absorbed(f.alpha), place);
+    float own = hdrp_i_oit_absorbed(f.alpha);
+    float all = hdrp_max(m.high.z, 0.0f);
     float even2 = six > 0.0f ? 0.48f : 0.375f;
     float even4 = six > 0.0f ? 0.451f : 0.375f;
     hdrp_v4 b = hdrp_v4_make(hdrp_i_oit_biased(m.power.x, inverse, 0.0f, bias),
@@ -973,9 +1040,12 @@ HDRP_FN float hdrp_oit_moments_transmittance(hdrp_oit_moments m, hdrp_oit_fragme
                              hdrp_i_oit_biased(m.power.w, inverse, even4, bias));
     hdrp_v2 h = hdrp_v2_make(hdrp_i_oit_biased(m.high.x, inverse, 0.0f, bias),
                              hdrp_i_oit_biased(m.high.y, inverse, 0.45f, bias));
-    float own = hdrp_i_oit_absorbed(f.alpha) * inverse;
-    float before = six > 0.0f ? hdrp_i_oit_before_6(b, h, x, own) : hdrp_i_oit_before_4(b, x, own);
-    return hdrp_i_oit_through(front + place.behind * hdrp_max(m.high.z, 0.0f) * before);
+    hdrp_v2 before = six > 0.0f ? hdrp_i_oit_before_6(b, h, x) : hdrp_i_oit_before_4(b, x);
+    /* As if what may be before the fragment were two layers. */
+    float half_at = 0.5f * (all * before.y - HDRP_I_OIT_OWN * own);
+    float layer = hdrp_i_oit_perhaps_through(half_at, 0.5f);
+    float tail = hdrp_i_oit_through(all * before.x) * layer * layer;
+    return hdrp_i_oit_front(m.high.w, own, place) * hdrp_i_oit_tail(tail, all, place);
 }
 
 /* >>images */
@@ -1171,7 +1241,7 @@ static hdrp_oit_target hdrp_i_oit_target(hdrp_oit_format format, hdrp_oit_blend 
     t.pass = pass;
     t.clear = hdrp_v4_make(first, first, first, last);
     if (color == HDRP_OIT_BLEND_MAX) {
-        t.clear = hdrp_v4_make(-HDRP_OIT_DEPTH_MAX, 0.0f, 0.0f, 0.0f);
+        t.clear = hdrp_v4_make(-HDRP_OIT_NOTHING, 0.0f, 0.0f, 0.0f);
     }
     return t;
 }
@@ -1405,11 +1475,9 @@ static uint32_t hdrp_i_oit_first_color(const hdrp_oit_image* image)
     return image->desc.mode == HDRP_OIT_MODE_FRONT ? i + 1u : i;
 }
 
-static float hdrp_i_oit_mode_weight(const hdrp_oit_desc* d, hdrp_oit_fragment f)
+static float hdrp_i_oit_device_depth(const hdrp_oit_desc* d, hdrp_oit_fragment f)
 {
-    float depth = d->far_m / (d->far_m - d->near_m) * (1.0f - d->near_m / f.z_view);
-    return hdrp_oit_mode_weight(d->mode, f, depth,
-                                hdrp_oit_talk_settings_make(d->feather, d->exposure));
+    return d->far_m / (d->far_m - d->near_m) * (1.0f - d->near_m / f.z_view);
 }
 
 static hdrp_oit_place hdrp_i_oit_image_place(const hdrp_oit_image* image, hdrp_oit_fragment f,
@@ -1476,19 +1544,21 @@ static void hdrp_i_oit_shade(const hdrp_oit_image* image, hdrp_oit_fragment f, s
                              hdrp_v4* out)
 {
     const hdrp_oit_desc* d = &image->desc;
+    hdrp_oit_talk_settings talk = hdrp_oit_talk_settings_make(d->feather, d->exposure);
     hdrp_oit_targets t;
     if (d->mode == HDRP_OIT_MODE_FRONT) {
-        float nearest = -hdrp_i_oit_texel(image, 0u, pixel)->x;
+        hdrp_v4 range = *hdrp_i_oit_texel(image, 0u, pixel);
+        float nearest = hdrp_oit_nearest_of(hdrp_v2_make(range.x, 0.0f));
         hdrp_oit_front_targets all = hdrp_oit_front_export(f, nearest, d->scale);
         *out++ = all.front;
         t.accum = all.accum;
         t.light = all.light;
     } else if (d->mode == HDRP_OIT_MODE_TALK) {
-        t = hdrp_oit_talk_export(f, hdrp_oit_talk_settings_make(d->feather, d->exposure));
+        t = hdrp_oit_talk_export(f, talk);
     } else if (hdrp_i_oit_is_layered(d->mode)) {
         t = hdrp_oit_layer_export(f, hdrp_i_oit_image_through(image, f, pixel), d->scale);
     } else {
-        t = hdrp_oit_weighted_export(f, hdrp_i_oit_mode_weight(d, f), d->scale);
+        t = hdrp_oit_mode_export(d->mode, f, hdrp_i_oit_device_depth(d, f), talk, d->scale);
     }
     out[0] = t.accum;
     out[1] = t.light;

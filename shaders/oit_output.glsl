@@ -163,7 +163,7 @@ void hdrp_i_out_color(hdrp_oit_fragment f)
     hdrp_oit_talk_settings talk = hdrp_oit_talk_settings_make(HDRP_OIT_FEATHER, HDRP_OIT_EXPOSURE);
 #ifndef HDRP_OIT_ONE_PASS
     if (hdrp_i_out_has(HDRP_OIT_MODE_FRONT)) {
-        float nearest = -hdrp_i_out_fetch(hdrp_oit_range).x;
+        float nearest = hdrp_oit_nearest_of(hdrp_i_out_fetch(hdrp_oit_range).xy);
         hdrp_oit_front_targets all = hdrp_oit_front_export(f, nearest, HDRP_OIT_SCALE);
         hdrp_oit_0 = all.front;
         hdrp_oit_1 = all.accum;
@@ -179,8 +179,8 @@ void hdrp_i_out_color(hdrp_oit_fragment f)
     if (hdrp_i_out_has(HDRP_OIT_MODE_TALK)) {
         hdrp_i_out_targets(hdrp_oit_talk_export(f, talk));
     } else {
-        float weight = hdrp_oit_mode_weight(HDRP_OIT_MODE, f, HDRP_OIT_DEVICE_DEPTH, talk);
-        hdrp_i_out_targets(hdrp_oit_weighted_export(f, weight, HDRP_OIT_SCALE));
+        hdrp_i_out_targets(hdrp_oit_mode_export(HDRP_OIT_MODE, f, HDRP_OIT_DEVICE_DEPTH, talk,
+                                                HDRP_OIT_SCALE));
     }
 }
 

@@ -641,8 +641,9 @@ them cover nothing and emit their colour times such an opacity; and behind a nea
 
 {opacities}
 - `recommended` is what one pass can do with two RGBA16F targets. Its weight was fitted on depths of
-  1 to 200 m (tools/fit_oit.py).
-- `front` keeps the nearest layer apart, whose depth a pass before it wrote.
+  1 to 200 m, thin layers among dense ones included (tools/fit_oit.py).
+- `front` keeps the nearest layer apart, whose depth a pass before it wrote: that of a tenth or more,
+  so that the soft edge of a sprite is no front. The other modes of several passes do so, too.
 - `wavelet` and `moments` know how much of each layer is seen, and so of emission. They draw three
   times. Moments need 32-bit floats; wavelets add half floats.
 - `eq7` to `2015` are published weights (McGuire and Bavoil 2013, McGuire 2015), `talk_weight` is that
@@ -662,8 +663,8 @@ Where half of the layers emit up to a colour beside what they cover with, by opa
 - One layer is exact in every mode but `talk`, whatever it covers and emits: what is divided by its
   own coverage, or seen through it, is so without error. A share of emission that grows with opacity
   goes with the colour, the rest with what only adds.
-- A pane far before a group leaves all of it to one of the 16 intervals of `wavelet`. Moments have no
-  intervals.
+- A pane far before a group leaves all of it to two of the 16 intervals of `wavelet`. Moments have
+  no intervals, and few digits for what is close together.
 
 Light in R11G11B10F and coverage in R8 where the first table has RGBA16F for both. What only adds
 is then rounded at each layer:

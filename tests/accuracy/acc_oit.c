@@ -94,9 +94,11 @@ static void weight_error(acc* a)
     for (int i = 0; i < 200000; ++i) {
         float z = acc_float(depth(a, i)), alpha = opacity(a, i / 4 % 1000);
         double x = log(limited((double)z, 1e-6, 1e6)) / log(2.0), o = (double)alpha;
-        double level = -5.8876 - 2.7949 * o + 15.0535 * pow(o, 2.0) - 6.1724 * pow(o, 4.0);
-        double slope = 0.3094 - 0.9741 * o + 3.9349 * pow(o, 2.0) - 0.6661 * pow(o, 8.0);
-        double reference = exp(log(2.0) * limited(level - slope * x, -14.0, 0.0));
+        double level =
+            -7.2936 - 1.4768 * sqrt(o) - 0.7362 * o + 19.4126 * pow(o, 2.0) - 9.3971 * pow(o, 4.0);
+        double slope =
+            0.48 - 1.3173 * sqrt(o) + 1.3864 * o + 2.3104 * pow(o, 2.0) - 0.889 * pow(o, 8.0);
+        double reference = exp(log(2.0) * limited(level - slope * x, -10.0, 4.0));
         ACC_ADD(a, acc_relative((double)hdrp_oit_weight(z, alpha), reference), "z %.9g alpha %.9g",
                 (double)z, (double)alpha);
     }
@@ -140,20 +142,26 @@ static void place_error(acc* a)
     }
 }
 
-/* What absorbs before the place of layer i, by sums for each sixteenth. */
-static double before(const hdrp_oit_fragment* f, const hdrp_oit_place* p, int count, int i)
+/* What is seen of layer i: through all intervals before its own, of which the farthest layer is in the
+ * middle of the last, and through its own by how far in it the layer is. */
+static double seen(const hdrp_oit_fragment* f, const hdrp_oit_place* p, int count, int i)
 {
-    double sum = 0.0, at = 16.0 * (double)p[i].unit;
-    double bin = at < 16.0 ? floor(at) : 15.0;
+    double at = 15.5 * (double)p[i].unit, nearest = 0.0, before = 0.0, within = 0.0;
     for (int k = 0; k < count; ++k) {
-        double own = 16.0 * (double)p[k].unit, absorbed = -log1p(-(double)f[k].alpha);
-        double share = (own < 16.0 ? floor(own) : 15.0) < bin ? 1.0 : 0.0;
-        if (own >= bin && (own < bin + 1.0 || bin >= 15.0)) {
-            share = k == i ? 0.0 : at - bin;
+        double absorbed = -log1p(-(double)f[k].alpha), bin = floor(15.5 * (double)p[k].unit);
+        if (!(p[k].behind > 0.0f)) {
+            nearest += absorbed;
+        } else if (bin < floor(at)) {
+            before += absorbed;
+        } else if (bin == floor(at) && k != i) {
+            within += absorbed;
         }
-        sum += p[i].behind > 0.0f ? absorbed * (p[k].front > 0.0f ? 1.0 : share) : 0.0;
     }
-    return sum;
+    if (p[i].behind > 0.0f) {
+        return exp(-nearest - before) * (1.0 - (at - floor(at)) * (1.0 - exp(-within)));
+    }
+    within = fmax(nearest * (1.0 - 0x1p-10) + log1p(-(double)f[i].alpha), 0.0);
+    return p[i].front > 0.0f ? 1.0 - 0.75 * (1.0 - exp(-within)) : 1.0;
 }
 
 static hdrp_v4 add(hdrp_v4 a, hdrp_v4 b)
@@ -167,7 +175,7 @@ static void wavelet_error(acc* a)
         hdrp_oit_fragment f[8];
         hdrp_oit_place p[8];
         hdrp_oit_wavelet w;
-        hdrp_v2 range = hdrp_v2_make(-1e6f, 0.0f);
+        hdrp_v2 range = hdrp_v2_make(-HDRP_OIT_NOTHING, 0.0f);
         memset(&w, 0, sizeof w);
         for (int k = 0; k < 8; ++k) {
             hdrp_v2 own;
@@ -189,7 +197,7 @@ static void wavelet_error(acc* a)
         }
         for (int k = 0; k < 8; ++k) {
             double through = (double)hdrp_oit_wavelet_transmittance(w, f[k], p[k]);
-            ACC_ADD(a, fabs(through - exp(-before(f, p, 8, k))), "layer %d of pixel %d", k, i);
+            ACC_ADD(a, fabs(through - seen(f, p, 8, k)), "layer %d of pixel %d", k, i);
         }
     }
 }

@@ -882,7 +882,7 @@ static void attachments_blend_as_described(void** state)
     hdrp_oit_describe_targets(HDRP_OIT_MODE_WAVELET, HDRP_OIT_PRECISION_NATIVE, targets);
     a = hdrp_gpu_vk_oit_attachment_of(&targets[0]);
     assert_int_equal(a.format, VK_FORMAT_R32G32_SFLOAT);
-    assert_true(a.clear.color.float32[0] == -1e6f && a.clear.color.float32[1] == 0.0f);
+    assert_true(a.clear.color.float32[0] == -HDRP_OIT_NOTHING && a.clear.color.float32[1] == 0.0f);
     assert_int_equal(a.blend.colorBlendOp, VK_BLEND_OP_MAX);
     assert_int_equal(a.blend.alphaBlendOp, VK_BLEND_OP_MAX);
     targets[0].format = (hdrp_oit_format)99;

@@ -69,7 +69,7 @@ static void recommended_shares_what_covers_and_emits(void** state)
     (void)state;
     holds("shining_low", HDRP_OIT_MODE_RECOMMENDED, 0.17);
     holds("shining", HDRP_OIT_MODE_RECOMMENDED, 0.26);
-    holds("shining_high", HDRP_OIT_MODE_RECOMMENDED, 0.18);
+    holds("shining_high", HDRP_OIT_MODE_RECOMMENDED, 0.19);
 }
 
 static void recommended_is_the_same_at_every_exposure(void** state)
@@ -97,13 +97,15 @@ static void better_modes_are_as_good_as_promised(void** state)
             snprintf(name, sizeof name, "high%s", ranges[k]);
             holds(name, better[i], 0.015);
         }
-        holds("half_emissive", better[i], 0.03);
+        holds("pane", better[i], 0.07);
+    }
+    for (uint32_t m = HDRP_OIT_MODE_WAVELET; m <= HDRP_OIT_MODE_MOMENTS_4; ++m) {
+        holds("half_emissive", (hdrp_oit_mode)m, 0.03);
     }
     holds("shining_low", HDRP_OIT_MODE_WAVELET, 0.03);
     holds("shining_low", HDRP_OIT_MODE_MOMENTS_6, 0.035);
     holds("shining_high", HDRP_OIT_MODE_WAVELET, 0.02);
     holds("shining_high", HDRP_OIT_MODE_MOMENTS_6, 0.02);
-    holds("pane", HDRP_OIT_MODE_MOMENTS_6, 0.05);
     holds("low", HDRP_OIT_MODE_MOMENTS_4, 0.006);
     holds("mixed", HDRP_OIT_MODE_MOMENTS_4, 0.032);
     holds("high", HDRP_OIT_MODE_MOMENTS_4, 0.060);
@@ -113,7 +115,7 @@ static void a_front_apart_is_worth_a_pass_of_depth(void** state)
 {
     (void)state;
     holds("low", HDRP_OIT_MODE_FRONT, 0.014);
-    holds("mixed", HDRP_OIT_MODE_FRONT, 0.055);
+    holds("mixed", HDRP_OIT_MODE_FRONT, 0.045);
     holds("high", HDRP_OIT_MODE_FRONT, 0.015);
     holds("half_emissive", HDRP_OIT_MODE_FRONT, 0.15);
     holds("front_99", HDRP_OIT_MODE_FRONT, 0.002);
@@ -141,7 +143,7 @@ static void a_dense_front_hides_what_is_behind(void** state)
         oit_error e = measure("front_99", (hdrp_oit_mode)m, HDRP_OIT_PRECISION_NATIVE);
         assert_true(e.largest <= 0.03);
     }
-    holds("front_99", HDRP_OIT_MODE_RECOMMENDED, 0.11);
+    holds("front_99", HDRP_OIT_MODE_RECOMMENDED, 0.07);
 }
 
 static void errors_are_those_on_record(void** state)
@@ -188,7 +190,7 @@ static void nothing_jumps_that_sorting_cards_makes_jump(void** state)
     assert_true(crossing[MOTION_SORTED_CARDS].picture > 0.05);
     for (uint32_t way = 0; way < HDRP_OIT_MODE_COUNT; ++way) {
         assert_true(crossing[way].picture <= 0.15 * crossing[MOTION_SORTED_CARDS].picture);
-        assert_true(crossing[way].picture <= 0.5 * crossing[MOTION_SORTED_PIXELS].picture);
+        assert_true(crossing[way].picture <= 0.6 * crossing[MOTION_SORTED_PIXELS].picture);
     }
     assert_true(orbit[HDRP_OIT_MODE_RECOMMENDED].picture <= 0.001);
     assert_true(orbit[HDRP_OIT_MODE_RECOMMENDED].pixel <= 0.01);

@@ -148,10 +148,10 @@ static void nearer_and_denser_weighs_more(void** state)
     /* Dense ones by the -2.6th power of depth, thin ones hardly. */
     assert_true(
         fabs(log2((double)hdrp_oit_weight(8.0f, 1.0f) / (double)hdrp_oit_weight(16.0f, 1.0f)) -
-             2.6041) < 1e-4);
+             1.9705) < 1e-4);
     assert_true(
         fabs(log2((double)hdrp_oit_weight(8.0f, 0.1f) / (double)hdrp_oit_weight(16.0f, 0.1f)) -
-             0.25134) < 1e-4);
+             0.22518) < 1e-4);
 }
 
 /* ---- pixels ---------------------------------------------------------------------------------- */
@@ -176,9 +176,9 @@ static void one_layer_is_exact_in_every_mode(void** state)
 }
 
 /* Alphas that revealage notices or not, and both sides of what counts as thin. */
-static const float layer_alphas[] = {0.0f,      1e-30f,  0x1p-24f, 0x1p-13f,       0x1p-10f,
-                                     0x1.fp-8f, 0x1p-7f, 0.02f,    0.1f,           0.11f,
-                                     0.5f,      0.9f,    0.9999f,  0x1.fffffep-1f, 1.0f};
+static const float layer_alphas[] = {0.0f,    1e-30f,  0x1p-24f, 0x1p-13f,       0x1.fp-10f,
+                                     0x1p-9f, 0x1p-7f, 0.02f,    0.1f,           0.11f,
+                                     0.5f,    0.9f,    0.9999f,  0x1.fffffep-1f, 1.0f};
 
 static void one_layer_that_shines_is_exact_in_every_mode_but_the_talk(void** state)
 {
@@ -192,7 +192,10 @@ static void one_layer_that_shines_is_exact_in_every_mode_but_the_talk(void** sta
                          v3(uniform(0, 4), uniform(0, 4), uniform(0, 4)), layer_alphas[i], z);
             hdrp_oit_mode mode = (hdrp_oit_mode)m;
             hdrp_v3 exact = over(f, behind);
-            assert_color(color_of(&f, 1, behind, mode, HDRP_OIT_PRECISION_FLOAT), exact, 4e-6);
+            /* Published weights times such an alpha are too small to be told from nothing. */
+            double lost = m > HDRP_OIT_MODE_MOMENTS_4 && f.alpha < 0x1p-9f ? (double)f.alpha : 0.0;
+            assert_color(color_of(&f, 1, behind, mode, HDRP_OIT_PRECISION_FLOAT), exact,
+                         4e-6 + lost);
             /* Emission is rounded, and what it is multiplied by changes with rounded revealage. */
             assert_color(color_of(&f, 1, behind, mode, HDRP_OIT_PRECISION_NATIVE), exact, 0x1p-7);
         }
@@ -289,7 +292,10 @@ static void order_changes_little_where_depths_are_close(void** state)
             }
             assert_color(color_of(turned, 12, behind, (hdrp_oit_mode)m, HDRP_OIT_PRECISION_NATIVE),
                          color_of(f, 12, behind, (hdrp_oit_mode)m, HDRP_OIT_PRECISION_NATIVE),
-                         m >= HDRP_OIT_MODE_MOMENTS_6 ? 0.01 : 0.004);
+                         0.006); /* twelve roundings of sums up to 4 */
+            assert_color(color_of(turned, 12, behind, (hdrp_oit_mode)m, HDRP_OIT_PRECISION_FLOAT),
+                         color_of(f, 12, behind, (hdrp_oit_mode)m, HDRP_OIT_PRECISION_FLOAT),
+                         m >= HDRP_OIT_MODE_MOMENTS_6 ? 0.002 : 1e-5);
         }
     }
 }
@@ -313,9 +319,14 @@ static void two_layers_are_exact_in_the_better_modes(void** state)
             }
             int near_one = f[1].z_view < f[0].z_view;
             hdrp_v3 exact = over(f[near_one], over(f[1 - near_one], behind));
-            /* A bias moves some of what moments see absorbed to where nothing is. */
+            /* A bias moves some of what moments see absorbed to where nothing is. And what is too
+             * thin for a front is not quite before the other, or covers beside it. */
+            double tolerance = m >= HDRP_OIT_MODE_MOMENTS_6 ? 0x1p-11 : 1e-6;
+            if (f[near_one].alpha < HDRP_OIT_FRONT_ALPHA) {
+                tolerance = m == HDRP_OIT_MODE_FRONT ? 0.1 : 0.008;
+            }
             assert_color(color_of(f, 2, behind, (hdrp_oit_mode)m, HDRP_OIT_PRECISION_FLOAT), exact,
-                         m >= HDRP_OIT_MODE_MOMENTS_6 ? 0x1p-11 : 1e-6);
+                         tolerance);
         }
     }
 }
@@ -355,15 +366,15 @@ static void many_layers_at_one_depth_stay_visible(void** state)
 static void emission_is_seen_through_what_is_before_it(void** state)
 {
     const hdrp_oit_fragment glass = fragment(v3(0, 0, 0), v3(0, 0, 0), 0.75f, 5.0f);
-    const float depths[3] = {2.0f, 5.0f, 9.0f}, seen[3] = {1.0f, 1.0f, 0.25f};
+    /* At the same depth something is before it in three of four cases. */
+    const float depths[3] = {2.0f, 5.0f, 9.0f}, seen[3] = {1.0f, 0.4375f, 0.25f};
     (void)state;
     for (uint32_t m = HDRP_OIT_MODE_WAVELET; m <= HDRP_OIT_MODE_MOMENTS_4; ++m) {
         for (int i = 0; i < 3; ++i) {
             hdrp_oit_fragment f[2] = {fragment(v3(0, 0, 0), v3(1, 2, 4), 0.0f, depths[i]), glass};
-            float s =
-                i == 1 ? 0.5f : seen[i]; /* at the same depth half of what absorbs is before */
+            float s = seen[i];
             hdrp_v3 c = color_of(f, 2, v3(0, 0, 0), (hdrp_oit_mode)m, HDRP_OIT_PRECISION_FLOAT);
-            assert_color(c, v3(s, 2.0f * s, 4.0f * s), 1e-5);
+            assert_color(c, v3(s, 2.0f * s, 4.0f * s), i == 1 ? 3e-3 : 1e-5);
         }
     }
     /* Without depth: the mean over what absorbs evenly. */
@@ -371,6 +382,66 @@ static void emission_is_seen_through_what_is_before_it(void** state)
     float s = 0.75f / logf(4.0f);
     assert_color(color_of(f, 2, v3(0, 0, 0), HDRP_OIT_MODE_RECOMMENDED, HDRP_OIT_PRECISION_FLOAT),
                  v3(s, 2.0f * s, 4.0f * s), 1e-5);
+}
+
+/* Soft edges of sprites are before much, and hide nothing. */
+static void a_wisp_is_no_front(void** state)
+{
+    const hdrp_v3 black = v3(0, 0, 0), behind = v3(0.5f, 0.5f, 0.5f);
+    const float alphas[4] = {1e-7f, 1e-3f, 0.02f, 0.09f};
+    (void)state;
+    for (uint32_t m = HDRP_OIT_MODE_FRONT; m <= HDRP_OIT_MODE_MOMENTS_4; ++m) {
+        for (int i = 0; i < 4; ++i) {
+            hdrp_oit_fragment f[3] = {fragment(v3(0, 1, 0), black, alphas[i], 0.5f),
+                                      fragment(v3(1, 0, 0), black, 0.99f, 2.0f),
+                                      fragment(v3(0, 0, 1), black, 0.9f, 2.02f)};
+            hdrp_v3 exact = over(f[0], over(f[1], over(f[2], behind)));
+            assert_color(color_of(f, 3, behind, (hdrp_oit_mode)m, HDRP_OIT_PRECISION_NATIVE), exact,
+                         0.02);
+        }
+    }
+}
+
+/* What covers least in a pixel is its front where nothing is denser. */
+static void wisps_alone_are_in_order(void** state)
+{
+    const hdrp_v3 black = v3(0, 0, 0);
+    (void)state;
+    for (uint32_t m = HDRP_OIT_MODE_WAVELET; m <= HDRP_OIT_MODE_MOMENTS_4; ++m) {
+        hdrp_oit_fragment f[2] = {fragment(black, black, 0.09f, 2.0f),
+                                  fragment(black, v3(1, 2, 4), 0.05f, 3.0f)};
+        float s = 1.0f - 0.09f;
+        assert_color(color_of(f, 2, black, (hdrp_oit_mode)m, HDRP_OIT_PRECISION_FLOAT),
+                     v3(s, 2.0f * s, 4.0f * s), 1e-4);
+    }
+}
+
+/* A faint pane before dense layers that nothing tells from each other: not all of it is the pane. */
+static void a_faint_pane_does_not_take_the_picture(void** state)
+{
+    const hdrp_v3 black = v3(0, 0, 0);
+    (void)state;
+    for (uint32_t m = HDRP_OIT_MODE_WAVELET; m <= HDRP_OIT_MODE_MOMENTS_4; ++m) {
+        hdrp_oit_fragment f[4] = {
+            fragment(v3(1, 1, 1), black, 0.15f, 1.0f), fragment(black, black, 1.0f, 98.0f),
+            fragment(black, black, 1.0f, 99.0f), fragment(black, black, 1.0f, 100.0f)};
+        hdrp_v3 c = color_of(f, 4, black, (hdrp_oit_mode)m, HDRP_OIT_PRECISION_NATIVE);
+        assert_true(c.x >= 0.09f && c.x <= 0.27f);
+    }
+}
+
+/* Behind all that covers everything is between. */
+static void emission_behind_all_is_seen_through_all(void** state)
+{
+    const hdrp_v3 black = v3(0, 0, 0);
+    (void)state;
+    for (uint32_t m = HDRP_OIT_MODE_WAVELET; m <= HDRP_OIT_MODE_MOMENTS_4; ++m) {
+        hdrp_oit_fragment f[3] = {fragment(black, black, 0.3f, 2.0f),
+                                  fragment(black, black, 0.9f, 10.0f),
+                                  fragment(black, v3(1, 2, 4), 0.0f, 12.0f)};
+        hdrp_v3 c = color_of(f, 3, black, (hdrp_oit_mode)m, HDRP_OIT_PRECISION_FLOAT);
+        assert_color(c, v3(0.07f, 0.14f, 0.28f), 1e-5);
+    }
 }
 
 static void transmittance_never_leaves_its_range(void** state)
@@ -692,20 +763,22 @@ static void exports_go_by_their_weights(void** state)
 {
     hdrp_oit_fragment f = fragment(v3(1, 0.5f, 0), v3(0, 1, 0), 0.5f, 20.0f);
     hdrp_oit_targets a = hdrp_oit_export(f, 2.0f);
-    hdrp_oit_targets b = hdrp_oit_weighted_export(f, hdrp_oit_weight(20.0f, 0.5f), 2.0f);
+    hdrp_oit_fragment dull = hdrp_oit_fragment_make(f.premultiplied, v3(0, 0, 0), f.alpha, 20.0f);
+    hdrp_oit_targets e = hdrp_oit_export(dull, 2.0f);
+    hdrp_oit_targets b = hdrp_oit_weighted_export(dull, hdrp_oit_weight(20.0f, 0.5f), 2.0f);
     hdrp_oit_targets c = hdrp_oit_layer_export(f, 0.25f, 1.0f);
     hdrp_oit_targets d = hdrp_oit_talk_export(f, hdrp_oit_talk_settings_make(1.0f, 1.0f));
     (void)state;
-    assert_memory_equal(&a, &b, sizeof a);
+    assert_memory_equal(&e, &b, sizeof e);
     /* A 16th of the emission is apart, over what evenly absorbing halves of light let through. */
     assert_true(fabsf(a.light.y - 2.0f * logf(2.0f) / 8.0f) <= 1e-6f && a.light.w == 0.5f);
     assert_true(c.accum.x == 0.125f && c.accum.w == 0.125f && c.light.y == 0.25f);
     assert_true(d.light.x == 0.5f && d.light.w == 0.125f);
-    /* From 2^-7 on alpha carries the colour. */
-    assert_true(hdrp_oit_export(fragment(v3(1, 1, 1), v3(0, 0, 0), 0x1p-7f, 1.0f), 1.0f).accum.x >
+    /* From 2^-9 on alpha carries the colour. */
+    assert_true(hdrp_oit_export(fragment(v3(1, 1, 1), v3(0, 0, 0), 0x1p-9f, 1.0f), 1.0f).accum.x >
                 0.0f);
     assert_true(
-        hdrp_oit_export(fragment(v3(1, 1, 1), v3(0, 0, 0), 0x1.fffp-8f, 1.0f), 1.0f).accum.x ==
+        hdrp_oit_export(fragment(v3(1, 1, 1), v3(0, 0, 0), 0x1.fffp-10f, 1.0f), 1.0f).accum.x ==
         0.0f);
     /* A colour behind a scale comes back. */
     a.light.w = 0.5f;
@@ -717,6 +790,36 @@ static void exports_go_by_their_weights(void** state)
 }
 
 /* Each mode by its own text: published equations written out here, others by what they call. */
+static void modes_export_by_their_weights(void** state)
+{
+    hdrp_oit_fragment f = fragment(v3(1, 0.5f, 0), v3(0, 1, 0), 0.5f, 20.0f);
+    hdrp_oit_talk_settings s = hdrp_oit_talk_settings_make(1.0f, 1.0f);
+    hdrp_oit_targets a = hdrp_oit_mode_export(HDRP_OIT_MODE_RECOMMENDED, f, 0.5f, s, 2.0f);
+    hdrp_oit_targets b = hdrp_oit_export(f, 2.0f);
+    hdrp_oit_targets c = hdrp_oit_mode_export(HDRP_OIT_MODE_EQ10, f, 0.5f, s, 2.0f);
+    hdrp_oit_targets d = hdrp_oit_weighted_export(f, hdrp_oit_weight_eq10(0.5f, 0.5f), 2.0f);
+    (void)state;
+    assert_memory_equal(&a, &b, sizeof a);
+    assert_memory_equal(&c, &d, sizeof c);
+}
+
+static void ranges_tell_what_is_thin(void** state)
+{
+    const hdrp_v3 black = v3(0, 0, 0);
+    hdrp_v2 dense = hdrp_oit_range_export(fragment(black, black, 0.1f, 7.0f));
+    hdrp_v2 thin = hdrp_oit_range_export(fragment(black, black, 0.0999f, 3.0f));
+    hdrp_v2 far_one = hdrp_oit_range_export(fragment(black, black, 1.0f, INFINITY));
+    hdrp_v2 none = hdrp_oit_range_export(fragment(black, v3(1, 1, 1), 0.0f, 2.0f));
+    (void)state;
+    assert_true(hdrp_oit_nearest_of(dense) == 7.0f && dense.y == 7.0f);
+    assert_true(hdrp_oit_nearest_of(thin) == 3.0f && thin.y == 3.0f);
+    assert_true(hdrp_oit_nearest_of(far_one) == 1e6f && far_one.y == 1e6f);
+    assert_true(hdrp_oit_nearest_of(none) == 1e6f && none.y == 0.0f);
+    /* Of what is kept: the nearest dense one, else the nearest thin one, else nothing. */
+    assert_true(dense.x > thin.x && far_one.x > thin.x && thin.x > none.x);
+    assert_true(hdrp_oit_nearest_of(hdrp_v2_make(NAN, 0.0f)) == 1e-6f);
+}
+
 static void modes_choose_their_weights(void** state)
 {
     const hdrp_oit_talk_settings s = hdrp_oit_talk_settings_make(0.5f, 2.0f);
@@ -780,6 +883,10 @@ int main(void)
         cmocka_unit_test(layers_at_one_depth_share),
         cmocka_unit_test(many_layers_at_one_depth_stay_visible),
         cmocka_unit_test(emission_is_seen_through_what_is_before_it),
+        cmocka_unit_test(a_wisp_is_no_front),
+        cmocka_unit_test(wisps_alone_are_in_order),
+        cmocka_unit_test(a_faint_pane_does_not_take_the_picture),
+        cmocka_unit_test(emission_behind_all_is_seen_through_all),
         cmocka_unit_test(transmittance_never_leaves_its_range),
         cmocka_unit_test(moments_are_powers_of_the_place),
         cmocka_unit_test(equal_layers_keep_the_brightness_of_one_only_in_the_talk),
@@ -794,6 +901,8 @@ int main(void)
         cmocka_unit_test(bad_descriptions_are_rejected),
         cmocka_unit_test(the_front_is_kept_apart),
         cmocka_unit_test(exports_go_by_their_weights),
+        cmocka_unit_test(modes_export_by_their_weights),
+        cmocka_unit_test(ranges_tell_what_is_thin),
         cmocka_unit_test(modes_choose_their_weights),
     };
     return cmocka_run_group_tests_name("oit", tests, NULL, NULL);

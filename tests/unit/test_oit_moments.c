@@ -85,8 +85,8 @@ static void find_roots(const double* c, int n, double* roots)
     }
 }
 
-/* Share before x, by the moments b of degree 0 to 2 n; own is the share of the fragment itself. */
-static double share_before(const double* b, int n, double x, double own)
+/* Shares before x and, at most, at x, by the moments b of degree 0 to 2 n. */
+static void share_before(const double* b, int n, double x, double* before, double* most)
 {
     double matrix[UNKNOWNS][UNKNOWNS], kernel[UNKNOWNS], at[UNKNOWNS], weights[UNKNOWNS];
     for (int i = 0; i <= n; ++i) {
@@ -105,11 +105,19 @@ static double share_before(const double* b, int n, double x, double own)
         weights[i] = b[i];
     }
     solve(matrix, weights, n + 1);
-    double before = 0.55 * fmax(weights[0] - 1.3 * own, 0.0);
+    *most = weights[0];
+    *before = 0.0;
     for (int i = 1; i <= n; ++i) {
-        before += at[i] < x ? weights[i] : 0.0;
+        *before += at[i] < x ? weights[i] : 0.0;
     }
-    return before;
+}
+
+/* Through all that is before, and two layers that are so half of the time each: what is at the place
+ * at most, without what the fragment itself absorbs. */
+static double seen_through(double before, double at, double own)
+{
+    double layer = 0.5 * (1.0 + exp(-0.5 * fmax(at - 1.2 * own, 0.0)));
+    return exp(-before) * layer * layer;
 }
 
 typedef struct pixel {
@@ -167,10 +175,10 @@ static void measure(int count, int pixels, double* largest, double* mean)
             b[k] += (even[count == 6][k] - b[k]) * bias[count == 6];
         }
         for (int k = 1; k < LAYERS; ++k) {
-            double own = -log1p(-(double)p.f[k].alpha) / p.power[0];
+            double own = -log1p(-(double)p.f[k].alpha), all = p.power[0], before, most;
             double x = 2.0 * log2((double)p.f[k].z_view) / 4.0 - 1.0;
-            double share = share_before(b, count / 2, x, own);
-            double through = exp(-p.front - p.power[0] * share);
+            share_before(b, count / 2, x, &before, &most);
+            double through = exp(-p.front) * seen_through(all * before, all * most, own);
             float got = hdrp_oit_moments_transmittance(p.sums, p.f[k], p.place[k], (hdrp_u32)count);
             double error = fabs((double)got - through);
             *largest = error <= *largest ? *largest : error;
