@@ -220,7 +220,7 @@ HDRP_FN float hdrp_oit_weight_2015(float device_depth, float alpha)
  *  alpha    any    limited to [0,1]
  *  returns  [9.765625e-4,16] from 2^-10
  *  edges    depth is limited to [HDRP_OIT_DEPTH_MIN,HDRP_OIT_DEPTH_MAX]; NaN counts as the least
- *  error    <= 3e-6 relative  @accuracy oit_weight
+ *  error    <= 4e-6 relative  @accuracy oit_weight
  *  source   own fit by tools/fit_oit.py
  *  note     a power of depth, so that units matter little: hardly any for thin fragments, whose
  *           order matters little, up to the -2nd for dense ones. Thin ones weigh little, or soft
@@ -835,7 +835,7 @@ HDRP_FN hdrp_v2 hdrp_i_oit_descend(hdrp_v2 s, float left, hdrp_u32 right)
  *  place    valid
  *  returns  [0,1]
  *  edges    1 for the nearest fragment; NaN counts as nothing that absorbs
- *  error    <= 2.5e-7 absolute against sums per sixteenth in double  @accuracy oit_wavelet
+ *  error    <= 6e-7 absolute against sums per interval in double  @accuracy oit_wavelet
  *  source   Aizenshtein et al. 2022, "Wavelet Transparency": Haar, rank 3, linear within the finest
  *           intervals, without what the fragment itself absorbs */
 HDRP_FN float hdrp_oit_wavelet_transmittance(hdrp_oit_wavelet w, hdrp_oit_fragment f,
