@@ -145,6 +145,7 @@ bool gpu_open(gpu_device* d)
 void gpu_close(gpu_device* d)
 {
     if (d->device) {
+        vkDeviceWaitIdle(d->device); /* what a failed test left under way */
         vkDestroyCommandPool(d->device, d->pool, NULL);
         vkDestroyDevice(d->device, NULL);
     }
