@@ -11,7 +11,6 @@ shared uint farthest_bits[HDRP_CULL_BLOCK_COUNT]; // are not negative rise with 
 shared hdrp_cull_box block_boxes[HDRP_CULL_BLOCK_COUNT];
 shared hdrp_v3 corners[4];        // where four of the pixels are
 shared uint undecided[GROUP_MAX]; // blocks of each hit whose pixels are to be asked
-shared uint asked[GROUP_MAX];     // hits that have some
 shared uint mask_words[GROUP_MAX * MASK_WORDS_MAX];
 shared uint is_read;
 
@@ -275,19 +274,15 @@ void ask_pixels(uint n)
         ask_boxes(thread);
     }
     wait_for_group();
-    bool asks = thread < n && undecided[thread] != 0u;
-    uint count;
-    uint place = place_among(asks, count);
-    if (asks) {
-        asked[place] = thread;
-    }
-    wait_for_group();
-    uint k = 0u;
+    uint h = 0u;
     do {
-        if (k < count) {
-            ask_own_pixels(asked[k]);
+        while (h < n && undecided[h] == 0u) { // a loop of its own: what is behind it would take its time
+            ++h;
         }
-    } while (++k < count);
+        if (h < n) {
+            ask_own_pixels(h);
+        }
+    } while (++h < n);
     wait_for_group();
     if (!all && thread < n && blocks[thread] != 0u) {
         blocks[thread] = 0xffffu;
