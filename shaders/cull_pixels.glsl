@@ -276,7 +276,7 @@ void ask_pixels(uint n)
     wait_for_group();
     uint h = 0u;
     do {
-        while (h < n && undecided[h] == 0u) { // a loop of its own: what is behind it would take its time
+        while (h < n && undecided[h] == 0u) { // on its own: what is below takes its time even so
             ++h;
         }
         if (h < n) {
