@@ -87,6 +87,7 @@ void move_entry(uint from, uint to, uint mask)
 
 void main()
 {
+    frame = frame_in_memory;
     uint at = thread_index();
     uint slices = frame.grid.cells.x;
     uint index = at / slices;

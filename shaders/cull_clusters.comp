@@ -209,6 +209,7 @@ void write_cells()
 
 void main()
 {
+    frame = frame_in_memory;
     uvec2 tile = gl_WorkGroupID.xy;
     uvec2 begin = tile * frame.grid.tiles.xy;
     uint n = 0u;

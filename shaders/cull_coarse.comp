@@ -37,6 +37,7 @@ void measure(uvec2 first, uvec2 count)
 
 void main()
 {
+    frame = frame_in_memory;
     uvec2 first = gl_WorkGroupID.xy * frame.numbers.zw; // tile
     uvec2 begin = first * frame.grid.tiles.xy;
     uvec2 end = begin + frame.numbers.zw * frame.grid.tiles.xy;

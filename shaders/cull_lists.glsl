@@ -32,7 +32,10 @@ struct Seen
     uint order; // of importance: the least is dropped last
 };
 
-layout(std430, binding = 0) FRAME_ACCESS buffer FrameData { Frame frame; };
+layout(std430, binding = 0) FRAME_ACCESS buffer FrameData { Frame frame_in_memory; };
+// A copy, which main makes first: what is in memory may have changed for all that drivers know, and
+// is read anew each time.
+Frame frame;
 #ifndef NO_SHAPES
 layout(std430, binding = 1) SHAPE_ACCESS buffer SeenShapes { Seen seen_shapes[]; };
 layout(std430, binding = 2) SHAPE_ACCESS buffer Planes { vec4 planes[]; };

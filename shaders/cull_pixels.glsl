@@ -6,8 +6,11 @@
 layout(binding = 10) uniform texture2D depths;
 
 shared float pixel_z[PIXELS_MAX]; // block by block, each row by row; negative: sky
+shared uint nearest_bits[HDRP_CULL_BLOCK_COUNT]; // of depths in each block: those of floats that
+shared uint farthest_bits[HDRP_CULL_BLOCK_COUNT]; // are not negative rise with them
 shared hdrp_cull_box block_boxes[HDRP_CULL_BLOCK_COUNT];
-shared uint undecided[GROUP_MAX];     // blocks of each hit whose pixels are to be asked
+shared hdrp_v3 corners[4];        // where four of the pixels are
+shared uint undecided[GROUP_MAX]; // blocks of each hit whose pixels are to be asked
 shared uint mask_words[GROUP_MAX * MASK_WORDS_MAX];
 shared uint is_read;
 
@@ -52,42 +55,83 @@ void begin_pixels(uvec2 begin)
     wait_for_group();
 }
 
-void read_pixels()
+// Some pixels of a block, each step-th from a first one on.
+void read_block(uint block, uint first, uint step)
 {
-    uint p = gl_LocalInvocationIndex;
-    uint end = HDRP_CULL_BLOCK_COUNT * pixels_of_block();
+    uvec2 size = frame.grid.cells.zw;
+    uvec2 begin = uvec2(block & 3u, block >> 2) * size;
+    // Blocks may be wider than the tile, and reach beyond the picture.
+    uvec2 end = min(frame.grid.tiles.xy, frame.picture.xy - tile_begin);
+    float nearest = HDRP_FLT_MAX;
+    float farthest = -1.0;
+    uint k = first;
     do {
-        uvec2 in_tile = pixel_at(p);
-        uvec2 at = tile_begin + in_tile;
+        uint row = quotient(k, size.x);
+        uvec2 at = begin + uvec2(k - row * size.x, row);
         float z = -1.0;
-        // Blocks may be wider than the tile, and reach beyond the picture.
-        if (all(lessThan(in_tile, frame.grid.tiles.xy)) && all(lessThan(at, frame.picture.xy))) {
-            float texel = texelFetch(depths, ivec2(at), 0).x;
+        if (all(lessThan(at, end))) {
+            float texel = texelFetch(depths, ivec2(tile_begin + at), 0).x;
             z = frame.picture.w != 0u ? hdrp_view_depth(frame.device, texel) : texel;
             z = hdrp_cull_opaque_depth(z, frame.pixel.z, frame.pixel.w);
         }
-        if (p < end) {
-            pixel_z[p] = z;
-        }
-        p += GROUP;
-    } while (p < end);
-    wait_for_group();
-    hdrp_v2 size = hdrp_v2(frame.pixel.x * float(frame.grid.cells.z),
-                           frame.pixel.y * float(frame.grid.cells.w));
-    for (uint b = gl_LocalInvocationIndex; b < HDRP_CULL_BLOCK_COUNT; b += GROUP) {
-        float nearest = HDRP_FLT_MAX;
-        float farthest = -1.0;
-        uint k = b * pixels_of_block();
-        uint last = k + pixels_of_block();
-        do {
-            float z = pixel_z[k];
+        if (k < pixels_of_block() && block < HDRP_CULL_BLOCK_COUNT) {
+            pixel_z[block * pixels_of_block() + k] = z;
             nearest = z >= 0.0 && z < nearest ? z : nearest;
             farthest = z > farthest ? z : farthest;
-        } while (++k < last);
-        block_boxes[b] = hdrp_cull_block_box(window.tile.window, size, b,
-                                             hdrp_cull_interval(nearest, farthest),
-                                             frame.camera.forward_orthographic.w);
+        }
+        k += step;
+    } while (k < pixels_of_block());
+    if (farthest >= 0.0) { // an opaque depth is above 0, so that 0 is left for sky
+        atomicMin(nearest_bits[block], hdrp_bits_from_f32(nearest));
+        atomicMax(farthest_bits[block], hdrp_bits_from_f32(farthest));
     }
+}
+
+hdrp_cull_box box_of(uint block)
+{
+    hdrp_v2 size = hdrp_v2(frame.pixel.x * float(frame.grid.cells.z),
+                           frame.pixel.y * float(frame.grid.cells.w));
+    float farthest = farthest_bits[block] == 0u ? -1.0 : hdrp_f32_from_bits(farthest_bits[block]);
+    return hdrp_cull_block_box(
+        window.tile.window, size, block,
+        hdrp_cull_interval(hdrp_f32_from_bits(nearest_bits[block]), farthest),
+        frame.camera.forward_orthographic.w);
+}
+
+// In the middle of one of the blocks at the corners.
+hdrp_v3 corner(uint k)
+{
+    uint block = (k >> 1) * 12u + (k & 1u) * 3u;
+    uint place = block * pixels_of_block() + (frame.grid.cells.w / 2u) * frame.grid.cells.z +
+                 frame.grid.cells.z / 2u;
+    return place_of(pixel_at(place), pixel_z[place]);
+}
+
+void read_pixels()
+{
+    uint thread = gl_LocalInvocationIndex;
+    uint of_block = max(GROUP / HDRP_CULL_BLOCK_COUNT, 1u); // threads
+    for (uint b = thread; b < HDRP_CULL_BLOCK_COUNT; b += GROUP) {
+        nearest_bits[b] = hdrp_bits_from_f32(HDRP_FLT_MAX);
+        farthest_bits[b] = 0u;
+    }
+    wait_for_group();
+    uint block = thread / of_block;
+    do {
+        read_block(block, thread % of_block, of_block);
+        block += GROUP / of_block;
+    } while (block < HDRP_CULL_BLOCK_COUNT);
+    wait_for_group();
+    uint b = thread;
+    do {
+        if (b < HDRP_CULL_BLOCK_COUNT) {
+            block_boxes[b] = box_of(b);
+        }
+        if (b < 4u) {
+            corners[b] = corner(b);
+        }
+        b += GROUP;
+    } while (b < HDRP_CULL_BLOCK_COUNT);
     wait_for_group();
 }
 
@@ -95,13 +139,9 @@ void read_pixels()
 bool contains_a_corner(vec4 ball)
 {
     float nearest2 = HDRP_FLT_MAX;
-    for (uint k = 0u; k < 4u; ++k) { // in the middle of the blocks at the corners
-        uint block = (k >> 1) * 12u + (k & 1u) * 3u;
-        uint place = block * pixels_of_block() + (frame.grid.cells.w / 2u) * frame.grid.cells.z +
-                     frame.grid.cells.z / 2u;
-        if (pixel_z[place] >= 0.0) {
-            hdrp_v3 p = place_of(pixel_at(place), pixel_z[place]);
-            nearest2 = hdrp_min(hdrp_cull_distance_sq(ball, p), nearest2);
+    for (uint k = 0u; k < 4u; ++k) {
+        if (corners[k].z >= 0.0) {
+            nearest2 = hdrp_min(hdrp_cull_distance_sq(ball, corners[k]), nearest2);
         }
     }
     return nearest2 <= ball.w * ball.w;
@@ -236,7 +276,10 @@ void ask_pixels(uint n)
     wait_for_group();
     uint h = 0u;
     do {
-        if (h < n && undecided[h] != 0u) {
+        while (h < n && undecided[h] == 0u) { // on its own: what is below takes its time even so
+            ++h;
+        }
+        if (h < n) {
             ask_own_pixels(h);
         }
     } while (++h < n);

@@ -30,6 +30,7 @@ void write_bounds(uint i)
 
 void main()
 {
+    frame = frame_in_memory;
     uint i = thread_index();
     if (i < frame.grid.tiles.z * frame.grid.tiles.w) { // as long as no depth is known
         tiles[i] = vec4(frame.pixel.z, frame.pixel.w, frame.grid.series.w, 0.0);

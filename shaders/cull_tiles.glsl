@@ -115,6 +115,7 @@ uint write(uint n, uint written)
 
 void main()
 {
+    frame = frame_in_memory;
     uvec2 tile = gl_WorkGroupID.xy;
     uvec2 begin = tile * frame.grid.tiles.xy;
     uint written = 0u;

@@ -54,84 +54,35 @@ static bool make_low_depth(rd_vk_oit* o, rd_vk_device* d)
 
 /* >>passes */
 
-static VkAttachmentDescription depth_attachment(bool written)
-{
-    VkAttachmentDescription a;
-    memset(&a, 0, sizeof a);
-    a.format = VK_FORMAT_D32_SFLOAT;
-    a.samples = VK_SAMPLE_COUNT_1_BIT;
-    a.loadOp = written ? VK_ATTACHMENT_LOAD_OP_DONT_CARE : VK_ATTACHMENT_LOAD_OP_LOAD;
-    a.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-    a.stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
-    a.stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
-    a.initialLayout =
-        written ? VK_IMAGE_LAYOUT_UNDEFINED : VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
-    a.finalLayout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
-    return a;
-}
-
-static VkAttachmentDescription target_attachment(const hdrp_oit_target* target)
-{
-    VkAttachmentDescription a;
-    memset(&a, 0, sizeof a);
-    a.format = hdrp_gpu_vk_oit_attachment_of(target).format;
-    a.samples = VK_SAMPLE_COUNT_1_BIT;
-    a.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
-    a.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-    a.stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
-    a.stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
-    a.finalLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-    return a;
-}
-
 /* With some of the targets; without, the depth alone is written. */
-static VkResult make_pass(const rd_vk_device* d, const hdrp_oit_target* targets, uint32_t count,
-                          VkRenderPass* pass)
+static bool make_pass(rd_vk_device* d, const hdrp_oit_target* targets, uint32_t count,
+                      VkRenderPass* pass)
 {
     VkAttachmentDescription attachments[HDRP_OIT_TARGETS_MAX + 1];
-    VkAttachmentReference references[HDRP_OIT_TARGETS_MAX];
-    VkSubpassDependency dependencies[2];
-    const VkAttachmentReference depth = {count,
-                                         count ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL
-                                               : VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL};
-    const VkSubpassDescription subpass = {.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS,
-                                          .colorAttachmentCount = count,
-                                          .pColorAttachments = references,
-                                          .pDepthStencilAttachment = &depth};
-    const VkRenderPassCreateInfo info = {.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO,
-                                         .attachmentCount = count + 1,
-                                         .pAttachments = attachments,
-                                         .subpassCount = 1,
-                                         .pSubpasses = &subpass,
-                                         .dependencyCount = 2,
-                                         .pDependencies = dependencies};
     for (uint32_t i = 0; i < count; ++i) {
-        references[i].attachment = i;
-        references[i].layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-        attachments[i] = target_attachment(&targets[i]);
+        attachments[i] =
+            rd_vk_attachment(hdrp_gpu_vk_oit_attachment_of(&targets[i]).format,
+                             VK_ATTACHMENT_LOAD_OP_CLEAR, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     }
-    attachments[count] = depth_attachment(count == 0);
-    rd_vk_pass_order(dependencies);
-    return vkCreateRenderPass(d->device, &info, NULL, pass);
+    attachments[count] = rd_vk_attachment(
+        VK_FORMAT_D32_SFLOAT, count ? VK_ATTACHMENT_LOAD_OP_LOAD : VK_ATTACHMENT_LOAD_OP_DONT_CARE,
+        VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL);
+    return rd_vk_pass_make(d, attachments, count,
+                           count ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL
+                                 : VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
+                           pass);
 }
 
-static VkResult make_framebuffer(const rd_vk_device* d, const rd_vk_oit_layer* l, uint32_t first,
-                                 uint32_t count, const rd_vk_image* depth, VkRenderPass pass,
-                                 VkFramebuffer* framebuffer)
+static bool make_framebuffer(rd_vk_device* d, const rd_vk_oit_layer* l, uint32_t first,
+                             uint32_t count, const rd_vk_image* depth, VkRenderPass pass,
+                             VkFramebuffer* framebuffer)
 {
     VkImageView views[HDRP_OIT_TARGETS_MAX + 1];
-    const VkFramebufferCreateInfo info = {.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO,
-                                          .renderPass = pass,
-                                          .attachmentCount = count + 1,
-                                          .pAttachments = views,
-                                          .width = l->width,
-                                          .height = l->height,
-                                          .layers = 1};
     for (uint32_t i = 0; i < count; ++i) {
         views[i] = l->targets[first + i].base.view;
     }
     views[count] = depth->base.view;
-    return vkCreateFramebuffer(d->device, &info, NULL, framebuffer);
+    return rd_vk_framebuffer_make(d, pass, views, count + 1, l->width, l->height, framebuffer);
 }
 
 static bool make_passes(rd_vk_oit* o, rd_vk_device* d, const rd_vk_raster* raster)
@@ -140,22 +91,16 @@ static bool make_passes(rd_vk_oit* o, rd_vk_device* d, const rd_vk_raster* raste
     for (uint32_t i = 0; ok && i < o->pass_count; ++i) {
         uint32_t first = rd_vk_oit_pass_first(o, i);
         uint32_t count = rd_vk_oit_pass_first(o, i + 1) - first;
-        ok =
-            rd_vk_check(d, make_pass(d, o->targets + first, count, &o->passes[i]), "a render pass");
+        ok = make_pass(d, o->targets + first, count, &o->passes[i]);
         for (uint32_t k = 0; ok && k < o->layer_count; ++k) {
             rd_vk_oit_layer* l = &o->layers[k];
             const rd_vk_image* depth = k ? &o->low_depth : &raster->targets[RD_VK_DEPTH];
-            ok = rd_vk_check(
-                d, make_framebuffer(d, l, first, count, depth, o->passes[i], &l->framebuffers[i]),
-                "a framebuffer");
+            ok = make_framebuffer(d, l, first, count, depth, o->passes[i], &l->framebuffers[i]);
         }
     }
-    return ok && (o->layer_count < 2 ||
-                  (rd_vk_check(d, make_pass(d, NULL, 0, &o->depth_pass), "a render pass") &&
-                   rd_vk_check(d,
-                               make_framebuffer(d, &o->layers[1], 0, 0, &o->low_depth,
-                                                o->depth_pass, &o->depth_framebuffer),
-                               "a framebuffer")));
+    return ok && (o->layer_count < 2 || (make_pass(d, NULL, 0, &o->depth_pass) &&
+                                         make_framebuffer(d, &o->layers[1], 0, 0, &o->low_depth,
+                                                          o->depth_pass, &o->depth_framebuffer)));
 }
 
 /* >>descriptors */

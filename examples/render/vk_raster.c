@@ -2,7 +2,6 @@
 
 #include <string.h>
 
-#define COLORS_MAX    7u
 #define CONSTANTS_MAX 8u
 
 /* >>targets */
@@ -60,6 +59,77 @@ static bool make_targets(rd_vk_raster* r, rd_vk_device* d)
 
 /* >>render passes */
 
+VkAttachmentDescription rd_vk_attachment(VkFormat format, VkAttachmentLoadOp load,
+                                         VkImageLayout layout)
+{
+    VkAttachmentDescription a;
+    memset(&a, 0, sizeof a);
+    a.format = format;
+    a.samples = VK_SAMPLE_COUNT_1_BIT;
+    a.loadOp = load;
+    a.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    a.stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
+    a.stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+    a.initialLayout = load == VK_ATTACHMENT_LOAD_OP_LOAD ? layout : VK_IMAGE_LAYOUT_UNDEFINED;
+    a.finalLayout = layout;
+    return a;
+}
+
+/* Orders a pass after all that was recorded before, and what comes after it likewise. Passes are
+ * compatible where this is the same too. */
+static VkSubpassDependency dependency(uint32_t from, uint32_t to)
+{
+    VkSubpassDependency s;
+    memset(&s, 0, sizeof s);
+    s.srcSubpass = from;
+    s.dstSubpass = to;
+    s.srcStageMask = from == VK_SUBPASS_EXTERNAL ? VK_PIPELINE_STAGE_ALL_COMMANDS_BIT
+                                                 : VK_PIPELINE_STAGE_ALL_GRAPHICS_BIT;
+    s.dstStageMask = to == VK_SUBPASS_EXTERNAL ? VK_PIPELINE_STAGE_ALL_COMMANDS_BIT
+                                               : VK_PIPELINE_STAGE_ALL_GRAPHICS_BIT;
+    s.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
+    s.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
+    return s;
+}
+
+bool rd_vk_pass_make(rd_vk_device* d, const VkAttachmentDescription* attachments, uint32_t colors,
+                     VkImageLayout depth, VkRenderPass* out)
+{
+    VkAttachmentReference references[RD_VK_COLORS_MAX];
+    const VkAttachmentReference last = {colors, depth};
+    const VkSubpassDependency dependencies[2] = {dependency(VK_SUBPASS_EXTERNAL, 0),
+                                                 dependency(0, VK_SUBPASS_EXTERNAL)};
+    const VkSubpassDescription subpass = {.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS,
+                                          .colorAttachmentCount = colors,
+                                          .pColorAttachments = references,
+                                          .pDepthStencilAttachment = &last};
+    const VkRenderPassCreateInfo info = {.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO,
+                                         .attachmentCount = colors + 1,
+                                         .pAttachments = attachments,
+                                         .subpassCount = 1,
+                                         .pSubpasses = &subpass,
+                                         .dependencyCount = 2,
+                                         .pDependencies = dependencies};
+    for (uint32_t i = 0; i < colors; ++i) {
+        references[i].attachment = i;
+        references[i].layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+    }
+    return rd_vk_check(d, vkCreateRenderPass(d->device, &info, NULL, out), "a render pass");
+}
+
+bool rd_vk_framebuffer_make(rd_vk_device* d, VkRenderPass pass, const VkImageView* views,
+                            uint32_t count, uint32_t width, uint32_t height, VkFramebuffer* out)
+{
+    const VkFramebufferCreateInfo info = {.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO,
+                                          .renderPass = pass,
+                                          .attachmentCount = count,
+                                          .pAttachments = views,
+                                          .width = width,
+                                          .height = height,
+                                          .layers = 1};
+    return rd_vk_check(d, vkCreateFramebuffer(d->device, &info, NULL, out), "a framebuffer");
+}
+
 /* The colour targets of a pass. */
 static uint32_t colors_of(rd_vk_pass pass, rd_vk_target* out)
 {
@@ -80,93 +150,38 @@ static uint32_t colors_of(rd_vk_pass pass, rd_vk_target* out)
     return n;
 }
 
-static VkAttachmentDescription attachment(VkFormat format, bool cleared, VkImageLayout layout)
+static bool make_pass(rd_vk_raster* r, rd_vk_device* d, rd_vk_pass pass)
 {
-    VkAttachmentDescription a;
-    memset(&a, 0, sizeof a);
-    a.format = format;
-    a.samples = VK_SAMPLE_COUNT_1_BIT;
-    a.loadOp = cleared ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD;
-    a.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-    a.stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
-    a.stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
-    a.initialLayout = cleared ? VK_IMAGE_LAYOUT_UNDEFINED : layout;
-    a.finalLayout = layout;
-    return a;
-}
-
-/* Orders a pass after all that was recorded before, and what comes after it likewise. */
-static VkSubpassDependency dependency(uint32_t from, uint32_t to)
-{
-    VkSubpassDependency s;
-    memset(&s, 0, sizeof s);
-    s.srcSubpass = from;
-    s.dstSubpass = to;
-    s.srcStageMask = from == VK_SUBPASS_EXTERNAL ? VK_PIPELINE_STAGE_ALL_COMMANDS_BIT
-                                                 : VK_PIPELINE_STAGE_ALL_GRAPHICS_BIT;
-    s.dstStageMask = to == VK_SUBPASS_EXTERNAL ? VK_PIPELINE_STAGE_ALL_COMMANDS_BIT
-                                               : VK_PIPELINE_STAGE_ALL_GRAPHICS_BIT;
-    s.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
-    s.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
-    return s;
-}
-
-void rd_vk_pass_order(VkSubpassDependency dependencies[2])
-{
-    dependencies[0] = dependency(VK_SUBPASS_EXTERNAL, 0);
-    dependencies[1] = dependency(0, VK_SUBPASS_EXTERNAL);
-}
-
-static VkResult make_pass(rd_vk_raster* r, rd_vk_device* d, rd_vk_pass pass)
-{
-    const VkImageLayout depth_layout = pass >= RD_VK_PASS_LIT
-                                           ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL
-                                           : VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
-    rd_vk_target colors[COLORS_MAX];
-    VkAttachmentDescription attachments[COLORS_MAX + 1];
-    VkAttachmentReference references[COLORS_MAX];
-    VkSubpassDependency dependencies[2];
-    const VkAttachmentReference depth = {colors_of(pass, colors), depth_layout};
-    uint32_t count = depth.attachment;
-    VkSubpassDescription subpass = {.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS,
-                                    .colorAttachmentCount = count,
-                                    .pColorAttachments = references,
-                                    .pDepthStencilAttachment = &depth};
-    VkRenderPassCreateInfo info = {.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO,
-                                   .attachmentCount = count + 1,
-                                   .pAttachments = attachments,
-                                   .subpassCount = 1,
-                                   .pSubpasses = &subpass,
-                                   .dependencyCount = 2,
-                                   .pDependencies = dependencies};
-    for (uint32_t i = 0; i < count; ++i) {
-        references[i].attachment = i;
-        references[i].layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-        attachments[i] = attachment(format_of(d, (int)colors[i]), pass != RD_VK_PASS_LIT,
-                                    VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-    }
-    attachments[count] = attachment(formats[RD_VK_DEPTH], pass == RD_VK_PASS_DEPTH, depth_layout);
-    rd_vk_pass_order(dependencies);
-    return vkCreateRenderPass(d->device, &info, NULL, &r->passes[pass]);
-}
-
-static VkResult make_framebuffer(rd_vk_raster* r, rd_vk_device* d, rd_vk_pass pass)
-{
-    rd_vk_target colors[COLORS_MAX];
-    VkImageView views[COLORS_MAX + 1];
+    const VkAttachmentLoadOp load =
+        pass == RD_VK_PASS_LIT ? VK_ATTACHMENT_LOAD_OP_LOAD : VK_ATTACHMENT_LOAD_OP_CLEAR;
+    const VkImageLayout layout = pass >= RD_VK_PASS_LIT
+                                     ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL
+                                     : VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
+    rd_vk_target colors[RD_VK_COLORS_MAX];
+    VkAttachmentDescription attachments[RD_VK_COLORS_MAX + 1];
     uint32_t count = colors_of(pass, colors);
-    VkFramebufferCreateInfo info = {.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO,
-                                    .renderPass = r->passes[pass],
-                                    .attachmentCount = count + 1,
-                                    .pAttachments = views,
-                                    .width = r->width,
-                                    .height = r->height,
-                                    .layers = 1};
+    for (uint32_t i = 0; i < count; ++i) {
+        attachments[i] = rd_vk_attachment(format_of(d, (int)colors[i]), load,
+                                          VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+    }
+    attachments[count] = rd_vk_attachment(formats[RD_VK_DEPTH],
+                                          pass == RD_VK_PASS_DEPTH ? VK_ATTACHMENT_LOAD_OP_CLEAR
+                                                                   : VK_ATTACHMENT_LOAD_OP_LOAD,
+                                          layout);
+    return rd_vk_pass_make(d, attachments, count, layout, &r->passes[pass]);
+}
+
+static bool make_framebuffer(rd_vk_raster* r, rd_vk_device* d, rd_vk_pass pass)
+{
+    rd_vk_target colors[RD_VK_COLORS_MAX];
+    VkImageView views[RD_VK_COLORS_MAX + 1];
+    uint32_t count = colors_of(pass, colors);
     for (uint32_t i = 0; i < count; ++i) {
         views[i] = r->targets[colors[i]].base.view;
     }
     views[count] = r->targets[RD_VK_DEPTH].base.view;
-    return vkCreateFramebuffer(d->device, &info, NULL, &r->framebuffers[pass]);
+    return rd_vk_framebuffer_make(d, r->passes[pass], views, count + 1, r->width, r->height,
+                                  &r->framebuffers[pass]);
 }
 
 bool rd_vk_raster_make(rd_vk_raster* r, rd_vk_device* d, uint32_t width, uint32_t height,
@@ -187,8 +202,7 @@ bool rd_vk_raster_make(rd_vk_raster* r, rd_vk_device* d, uint32_t width, uint32_
     ok = make_targets(r, d) &&
          rd_vk_check(d, vkCreatePipelineLayout(d->device, &layout, NULL, &r->layout), "a layout");
     for (int i = 0; ok && i < RD_VK_PASS_COUNT; ++i) {
-        ok = rd_vk_check(d, make_pass(r, d, (rd_vk_pass)i), "a render pass") &&
-             rd_vk_check(d, make_framebuffer(r, d, (rd_vk_pass)i), "a framebuffer");
+        ok = make_pass(r, d, (rd_vk_pass)i) && make_framebuffer(r, d, (rd_vk_pass)i);
     }
     return ok;
 }
@@ -210,13 +224,13 @@ void rd_vk_raster_free(rd_vk_raster* r, rd_vk_device* d)
 
 void rd_vk_pass_begin(const rd_vk_raster* r, rd_vk_device* d, rd_vk_pass pass)
 {
-    VkClearValue clear[COLORS_MAX + 1]; /* zeros: of reverse depth, the farthest */
+    VkClearValue clear[RD_VK_COLORS_MAX + 1]; /* zeros: of reverse depth, the farthest */
     const VkViewport viewport = {0.0f, 0.0f, (float)r->width, (float)r->height, 0.0f, 1.0f};
     VkRenderPassBeginInfo info = {.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO,
                                   .renderPass = r->passes[pass],
                                   .framebuffer = r->framebuffers[pass],
                                   .renderArea = {{0, 0}, {r->width, r->height}},
-                                  .clearValueCount = COLORS_MAX + 1,
+                                  .clearValueCount = RD_VK_COLORS_MAX + 1,
                                   .pClearValues = clear};
     memset(clear, 0, sizeof clear);
     for (int i = 0; pass == RD_VK_PASS_BEHIND && i < 4; ++i) {
@@ -302,8 +316,8 @@ static VkResult make_pipeline(const rd_vk_raster* r, rd_vk_device* d,
         .depthTestEnable = VK_TRUE,
         .depthWriteEnable = desc->writes_depth,
         .depthCompareOp = desc->compare};
-    VkPipelineColorBlendAttachmentState blends[COLORS_MAX];
-    rd_vk_target colors[COLORS_MAX];
+    VkPipelineColorBlendAttachmentState blends[RD_VK_COLORS_MAX];
+    rd_vk_target colors[RD_VK_COLORS_MAX];
     VkPipelineColorBlendStateCreateInfo blend = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO};
     const VkPipelineDynamicStateCreateInfo state = {

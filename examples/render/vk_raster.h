@@ -4,6 +4,9 @@
 
 #include "vk_device.h"
 
+/* Colours that a pass draws to, at most. */
+#define RD_VK_COLORS_MAX 7u
+
 typedef enum rd_vk_target {
     RD_VK_RT0,
     RD_VK_RT1,
@@ -47,8 +50,19 @@ void rd_vk_raster_free(rd_vk_raster* r, rd_vk_device* d);
 /* Recording. Images are in the layouts of attachments at begin and at end. */
 void rd_vk_pass_begin(const rd_vk_raster* r, rd_vk_device* d, rd_vk_pass pass);
 void rd_vk_pass_end(rd_vk_device* d);
-/* What orders a pass with all else: passes are compatible where this is the same too. */
-void rd_vk_pass_order(VkSubpassDependency dependencies[2]);
+
+/* >>render passes of others */
+
+/* An attachment that is stored; where it is loaded, it is in that layout before too. */
+VkAttachmentDescription rd_vk_attachment(VkFormat format, VkAttachmentLoadOp load,
+                                         VkImageLayout layout);
+/* A pass of up to RD_VK_COLORS_MAX colours and, behind them, a depth, in the layout that it is used
+ * in. All that was recorded before is done first, and all that comes after waits. */
+bool rd_vk_pass_make(rd_vk_device* d, const VkAttachmentDescription* attachments, uint32_t colors,
+                     VkImageLayout depth, VkRenderPass* out);
+/* The images that it draws to, in the order of attachments. */
+bool rd_vk_framebuffer_make(rd_vk_device* d, VkRenderPass pass, const VkImageView* views,
+                            uint32_t count, uint32_t width, uint32_t height, VkFramebuffer* out);
 
 /* >>pipelines */
 

@@ -128,42 +128,15 @@ static bool place(rd_vk_shadow* s, rd_vk_device* d, hdrp_light* records,
 
 /* >>images */
 
+/* Squares are cleared on their own: those of still lights stay. */
 static bool make_pass(rd_vk_shadow* s, rd_vk_device* d)
 {
-    /* Squares are cleared on their own: those of still lights stay. */
-    const VkAttachmentDescription attachment = {
-        .format = VK_FORMAT_D32_SFLOAT,
-        .samples = VK_SAMPLE_COUNT_1_BIT,
-        .loadOp = VK_ATTACHMENT_LOAD_OP_LOAD,
-        .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
-        .stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE,
-        .stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE,
-        .initialLayout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
-        .finalLayout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL};
-    const VkAttachmentReference depth = {0, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL};
-    const VkSubpassDescription subpass = {.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS,
-                                          .pDepthStencilAttachment = &depth};
-    VkSubpassDependency dependencies[2];
-    const VkRenderPassCreateInfo info = {.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO,
-                                         .attachmentCount = 1,
-                                         .pAttachments = &attachment,
-                                         .subpassCount = 1,
-                                         .pSubpasses = &subpass,
-                                         .dependencyCount = 2,
-                                         .pDependencies = dependencies};
-    VkFramebufferCreateInfo frame = {.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO,
-                                     .attachmentCount = 1,
-                                     .pAttachments = &s->atlas.base.view,
-                                     .width = ATLAS_PX,
-                                     .height = ATLAS_PX,
-                                     .layers = 1};
-    rd_vk_pass_order(dependencies);
-    if (!rd_vk_check(d, vkCreateRenderPass(d->device, &info, NULL, &s->pass), "a render pass")) {
-        return false;
-    }
-    frame.renderPass = s->pass;
-    return rd_vk_check(d, vkCreateFramebuffer(d->device, &frame, NULL, &s->framebuffer),
-                       "a framebuffer");
+    const VkImageLayout layout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
+    const VkAttachmentDescription depth =
+        rd_vk_attachment(VK_FORMAT_D32_SFLOAT, VK_ATTACHMENT_LOAD_OP_LOAD, layout);
+    return rd_vk_pass_make(d, &depth, 0, layout, &s->pass) &&
+           rd_vk_framebuffer_make(d, s->pass, &s->atlas.base.view, 1, ATLAS_PX, ATLAS_PX,
+                                  &s->framebuffer);
 }
 
 static bool make_images(rd_vk_shadow* s, rd_vk_device* d, const rd_renderer* r)

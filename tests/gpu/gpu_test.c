@@ -142,9 +142,23 @@ bool gpu_open(gpu_device* d)
     return true;
 }
 
+bool gpu_open_writing(gpu_device* d)
+{
+    if (!gpu_open(d)) {
+        return false;
+    }
+    if (!d->features.shaderStorageImageWriteWithoutFormat) {
+        puts("skipped: the device lacks shaderStorageImageWriteWithoutFormat");
+        gpu_close(d);
+        return false;
+    }
+    return true;
+}
+
 void gpu_close(gpu_device* d)
 {
     if (d->device) {
+        vkDeviceWaitIdle(d->device); /* what a failed test left under way */
         vkDestroyCommandPool(d->device, d->pool, NULL);
         vkDestroyDevice(d->device, NULL);
     }
@@ -222,19 +236,28 @@ void gpu_unmap(const gpu_device* d, const hdrp_gpu_vk_buffer* buffer)
     vkUnmapMemory(d->device, buffer->block.memory);
 }
 
-static void change_layout(VkCommandBuffer commands, VkImage image, VkImageAspectFlags aspect,
-                          VkImageLayout before, VkImageLayout after)
+hdrp_gpu_vk_buffer gpu_filled_buffer(const gpu_device* d, const hdrp_gpu_vk* gpu, const void* data,
+                                     size_t bytes)
 {
-    const VkImageMemoryBarrier barrier = {.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
-                                          .srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT,
-                                          .dstAccessMask = VK_ACCESS_MEMORY_READ_BIT |
-                                                           VK_ACCESS_MEMORY_WRITE_BIT,
-                                          .oldLayout = before,
-                                          .newLayout = after,
-                                          .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                          .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                          .image = image,
-                                          .subresourceRange = {aspect, 0, 1, 0, 1}};
+    hdrp_gpu_vk_buffer buffer = gpu_host_buffer(gpu, bytes);
+    memcpy(gpu_map(d, &buffer), data, bytes);
+    gpu_unmap(d, &buffer);
+    return buffer;
+}
+
+void gpu_change_layout(VkCommandBuffer commands, VkImage image, VkImageAspectFlags aspect,
+                       VkImageLayout before, VkImageLayout after)
+{
+    const VkImageMemoryBarrier barrier = {
+        .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
+        .srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT,
+        .dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT,
+        .oldLayout = before,
+        .newLayout = after,
+        .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+        .image = image,
+        .subresourceRange = {aspect, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS}};
     vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
                          VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, NULL, 0, NULL, 1, &barrier);
 }
@@ -244,12 +267,12 @@ void gpu_upload(VkCommandBuffer commands, const hdrp_gpu_vk_buffer* from,
 {
     const VkBufferImageCopy region = {.imageSubresource = {aspect, 0, 0, 1},
                                       .imageExtent = {to->width_px, to->height_px, 1}};
-    change_layout(commands, to->image, aspect, VK_IMAGE_LAYOUT_UNDEFINED,
-                  VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+    gpu_change_layout(commands, to->image, aspect, VK_IMAGE_LAYOUT_UNDEFINED,
+                      VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
     vkCmdCopyBufferToImage(commands, from->buffer, to->image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                            1, &region);
-    change_layout(commands, to->image, aspect, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                  VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    gpu_change_layout(commands, to->image, aspect, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                      VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
 }
 
 void gpu_download(VkCommandBuffer commands, const hdrp_gpu_vk_image* from,
@@ -257,12 +280,14 @@ void gpu_download(VkCommandBuffer commands, const hdrp_gpu_vk_image* from,
 {
     const VkBufferImageCopy region = {.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
                                       .imageExtent = {from->width_px, from->height_px, 1}};
-    change_layout(commands, from->image, VK_IMAGE_ASPECT_COLOR_BIT,
-                  VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    gpu_change_layout(commands, from->image, VK_IMAGE_ASPECT_COLOR_BIT,
+                      VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                      VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
     vkCmdCopyImageToBuffer(commands, from->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to->buffer,
                            1, &region);
-    change_layout(commands, from->image, VK_IMAGE_ASPECT_COLOR_BIT,
-                  VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    gpu_change_layout(commands, from->image, VK_IMAGE_ASPECT_COLOR_BIT,
+                      VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                      VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
 }
 
 static uint32_t device_memory_type(const gpu_device* d, uint32_t bits)
@@ -279,6 +304,30 @@ static uint32_t device_memory_type(const gpu_device* d, uint32_t bits)
     return 0;
 }
 
+hdrp_gpu_vk_image gpu_image(const gpu_device* d, const VkImageCreateInfo* info,
+                            VkImageViewType type, VkImageAspectFlags aspect)
+{
+    VkImageViewCreateInfo view = {
+        .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+        .viewType = type,
+        .format = info->format,
+        .subresourceRange = {aspect, 0, info->mipLevels, 0, info->arrayLayers}};
+    VkMemoryAllocateInfo allocation = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
+    VkMemoryRequirements needs;
+    hdrp_gpu_vk_image image = {
+        .format = info->format, .width_px = info->extent.width, .height_px = info->extent.height};
+    assert_int_equal(vkCreateImage(d->device, info, NULL, &image.image), VK_SUCCESS);
+    vkGetImageMemoryRequirements(d->device, image.image, &needs);
+    allocation.allocationSize = needs.size;
+    allocation.memoryTypeIndex = device_memory_type(d, needs.memoryTypeBits);
+    assert_int_equal(vkAllocateMemory(d->device, &allocation, NULL, &image.block.memory),
+                     VK_SUCCESS);
+    assert_int_equal(vkBindImageMemory(d->device, image.image, image.block.memory, 0), VK_SUCCESS);
+    view.image = image.image;
+    assert_int_equal(vkCreateImageView(d->device, &view, NULL, &image.view), VK_SUCCESS);
+    return image;
+}
+
 hdrp_gpu_vk_image gpu_depth_image(const gpu_device* d, uint32_t width, uint32_t height)
 {
     const VkImageCreateInfo info = {.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
@@ -291,26 +340,10 @@ hdrp_gpu_vk_image gpu_depth_image(const gpu_device* d, uint32_t width, uint32_t 
                                     .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
                                              VK_IMAGE_USAGE_SAMPLED_BIT |
                                              VK_IMAGE_USAGE_TRANSFER_DST_BIT};
-    VkImageViewCreateInfo view = {.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
-                                  .viewType = VK_IMAGE_VIEW_TYPE_2D,
-                                  .format = info.format,
-                                  .subresourceRange = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, 0, 1}};
-    VkMemoryAllocateInfo allocation = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
-    VkMemoryRequirements needs;
-    hdrp_gpu_vk_image image = {.format = info.format, .width_px = width, .height_px = height};
-    assert_int_equal(vkCreateImage(d->device, &info, NULL, &image.image), VK_SUCCESS);
-    vkGetImageMemoryRequirements(d->device, image.image, &needs);
-    allocation.allocationSize = needs.size;
-    allocation.memoryTypeIndex = device_memory_type(d, needs.memoryTypeBits);
-    assert_int_equal(vkAllocateMemory(d->device, &allocation, NULL, &image.block.memory),
-                     VK_SUCCESS);
-    assert_int_equal(vkBindImageMemory(d->device, image.image, image.block.memory, 0), VK_SUCCESS);
-    view.image = image.image;
-    assert_int_equal(vkCreateImageView(d->device, &view, NULL, &image.view), VK_SUCCESS);
-    return image;
+    return gpu_image(d, &info, VK_IMAGE_VIEW_TYPE_2D, VK_IMAGE_ASPECT_DEPTH_BIT);
 }
 
-void gpu_depth_image_destroy(const gpu_device* d, hdrp_gpu_vk_image* image)
+void gpu_image_destroy(const gpu_device* d, hdrp_gpu_vk_image* image)
 {
     vkDestroyImageView(d->device, image->view, NULL);
     vkDestroyImage(d->device, image->image, NULL);

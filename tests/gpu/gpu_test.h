@@ -31,6 +31,8 @@ typedef struct gpu_device {
 
 /* False, after a line that says why, where there is no device. */
 bool gpu_open(gpu_device* d);
+/* Where it also lacks what passes that write images need. */
+bool gpu_open_writing(gpu_device* d);
 void gpu_close(gpu_device* d);
 
 /* What hdrp_gpu_vk_init is given for all passes. */
@@ -41,8 +43,14 @@ void gpu_run(gpu_device* d); /* submits what was recorded, and waits */
 
 /* A buffer that the host can map, and its contents; map_done afterwards. */
 hdrp_gpu_vk_buffer gpu_host_buffer(const hdrp_gpu_vk* gpu, VkDeviceSize bytes);
+hdrp_gpu_vk_buffer gpu_filled_buffer(const gpu_device* d, const hdrp_gpu_vk* gpu, const void* data,
+                                     size_t bytes);
 void* gpu_map(const gpu_device* d, const hdrp_gpu_vk_buffer* buffer);
 void gpu_unmap(const gpu_device* d, const hdrp_gpu_vk_buffer* buffer);
+
+/* All levels and layers of an image, between all that was recorded before and all that comes. */
+void gpu_change_layout(VkCommandBuffer commands, VkImage image, VkImageAspectFlags aspect,
+                       VkImageLayout before, VkImageLayout after);
 
 /* Commands that move texels, for an image in SHADER_READ_ONLY_OPTIMAL afterwards. */
 void gpu_upload(VkCommandBuffer commands, const hdrp_gpu_vk_buffer* from,
@@ -50,8 +58,10 @@ void gpu_upload(VkCommandBuffer commands, const hdrp_gpu_vk_buffer* from,
 void gpu_download(VkCommandBuffer commands, const hdrp_gpu_vk_image* from,
                   const hdrp_gpu_vk_buffer* to);
 
-/* An image with a depth aspect, which hdrp_gpu_vk_image_create does not make. */
+/* Images that hdrp_gpu_vk_image_create does not make, with a view of all levels and layers. */
+hdrp_gpu_vk_image gpu_image(const gpu_device* d, const VkImageCreateInfo* info,
+                            VkImageViewType type, VkImageAspectFlags aspect);
 hdrp_gpu_vk_image gpu_depth_image(const gpu_device* d, uint32_t width, uint32_t height);
-void gpu_depth_image_destroy(const gpu_device* d, hdrp_gpu_vk_image* image);
+void gpu_image_destroy(const gpu_device* d, hdrp_gpu_vk_image* image);
 
 #endif /* GPU_TEST_H */

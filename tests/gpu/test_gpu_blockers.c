@@ -30,10 +30,7 @@ typedef struct buffers {
 
 static hdrp_gpu_vk_buffer filled(const void* data, size_t bytes)
 {
-    hdrp_gpu_vk_buffer b = gpu_host_buffer(&gpu, bytes);
-    memcpy(gpu_map(&device, &b), data, bytes);
-    gpu_unmap(&device, &b);
-    return b;
+    return gpu_filled_buffer(&device, &gpu, data, bytes);
 }
 
 static hdrp_gpu_vk_array range_of(const hdrp_gpu_vk_buffer* b)

@@ -909,12 +909,7 @@ int main(void)
         TEST(a_pipeline_cache_is_used),
     };
     int failed;
-    if (!gpu_open(&device)) {
-        return GPU_SKIPPED;
-    }
-    if (!device.features.shaderStorageImageWriteWithoutFormat) {
-        puts("skipped: the device lacks shaderStorageImageWriteWithoutFormat");
-        gpu_close(&device);
+    if (!gpu_open_writing(&device)) {
         return GPU_SKIPPED;
     }
     failed = cmocka_run_group_tests(tests, NULL, NULL);

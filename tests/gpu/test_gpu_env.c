@@ -52,8 +52,7 @@ static float half_to_float(uint16_t h)
 typedef struct picture {
     hdrp_env_image cpu;
     hdrp_gpu_vk_env_image on_gpu;
-    VkImage image;
-    VkDeviceMemory memory;
+    hdrp_gpu_vk_image image;
     hdrp_gpu_vk_buffer staging;
     float* texels;
 } picture;
@@ -71,26 +70,11 @@ static picture picture_make(hdrp_env_image_kind kind, uint32_t width, uint32_t h
                                     .samples = VK_SAMPLE_COUNT_1_BIT,
                                     .usage = VK_IMAGE_USAGE_SAMPLED_BIT |
                                              VK_IMAGE_USAGE_TRANSFER_DST_BIT};
-    VkImageViewCreateInfo view = {.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
-                                  .viewType = layers == 6u ? VK_IMAGE_VIEW_TYPE_2D_ARRAY
-                                                           : VK_IMAGE_VIEW_TYPE_2D,
-                                  .format = info.format,
-                                  .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, layers}};
-    VkMemoryAllocateInfo allocation = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
-    VkMemoryRequirements needs;
-    hdrp_gpu_vk_block block;
     memset(&p, 0, sizeof p);
-    assert_int_equal(vkCreateImage(device.device, &info, NULL, &p.image), VK_SUCCESS);
-    vkGetImageMemoryRequirements(device.device, p.image, &needs);
-    memset(&block, 0, sizeof block);
-    allocation.allocationSize = needs.size;
-    for (uint32_t bits = needs.memoryTypeBits; !(bits & 1u); bits >>= 1) {
-        ++allocation.memoryTypeIndex;
-    }
-    assert_int_equal(vkAllocateMemory(device.device, &allocation, NULL, &p.memory), VK_SUCCESS);
-    assert_int_equal(vkBindImageMemory(device.device, p.image, p.memory, 0), VK_SUCCESS);
-    view.image = p.image;
-    assert_int_equal(vkCreateImageView(device.device, &view, NULL, &p.on_gpu.view), VK_SUCCESS);
+    p.image = gpu_image(&device, &info,
+                        layers == 6u ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D,
+                        VK_IMAGE_ASPECT_COLOR_BIT);
+    p.on_gpu.view = p.image.view;
     p.staging = gpu_host_buffer(&gpu, (VkDeviceSize)16 * width * height * layers);
     p.texels = gpu_map(&device, &p.staging);
     p.cpu.texels = p.texels;
@@ -109,26 +93,13 @@ static void picture_destroy(picture* p)
 {
     gpu_unmap(&device, &p->staging);
     hdrp_gpu_vk_buffer_destroy(&gpu, &p->staging);
-    vkDestroyImageView(device.device, p->on_gpu.view, NULL);
-    vkDestroyImage(device.device, p->image, NULL);
-    vkFreeMemory(device.device, p->memory, NULL);
+    gpu_image_destroy(&device, &p->image);
 }
 
-static void layers_to(VkCommandBuffer commands, VkImage image, uint32_t level, uint32_t layers,
-                      VkImageLayout before, VkImageLayout after)
+static void change(VkCommandBuffer commands, VkImage image, VkImageLayout before,
+                   VkImageLayout after)
 {
-    const VkImageMemoryBarrier barrier = {
-        .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
-        .srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT,
-        .dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT,
-        .oldLayout = before,
-        .newLayout = after,
-        .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-        .image = image,
-        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, level, 1, 0, layers}};
-    vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
-                         VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, NULL, 0, NULL, 1, &barrier);
+    gpu_change_layout(commands, image, VK_IMAGE_ASPECT_COLOR_BIT, before, after);
 }
 
 static void picture_upload(VkCommandBuffer commands, const picture* p)
@@ -136,12 +107,12 @@ static void picture_upload(VkCommandBuffer commands, const picture* p)
     uint32_t layers = p->cpu.kind == HDRP_ENV_CUBE ? 6u : 1u;
     const VkBufferImageCopy region = {.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, layers},
                                       .imageExtent = {p->cpu.width, p->cpu.height, 1}};
-    layers_to(commands, p->image, 0, layers, VK_IMAGE_LAYOUT_UNDEFINED,
-              VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-    vkCmdCopyBufferToImage(commands, p->staging.buffer, p->image,
+    change(commands, p->image.image, VK_IMAGE_LAYOUT_UNDEFINED,
+           VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+    vkCmdCopyBufferToImage(commands, p->staging.buffer, p->image.image,
                            VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
-    layers_to(commands, p->image, 0, layers, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-              VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    change(commands, p->image.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+           VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
 }
 
 static size_t texel_count(const picture* p)
@@ -191,13 +162,13 @@ static void copy_cube(VkCommandBuffer commands, const hdrp_gpu_vk_cube* cube,
                       const hdrp_gpu_vk_buffer* to)
 {
     VkDeviceSize bytes = cube->format == VK_FORMAT_R32G32B32A32_SFLOAT ? 16 : 8;
+    change(commands, cube->image, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+           VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
     for (uint32_t k = 0; k < cube->level_count; ++k) {
         const VkBufferImageCopy region = {
             .bufferOffset = bytes * cube_texels(cube->size_px, k),
             .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, k, 0, 6},
             .imageExtent = {cube->size_px >> k, cube->size_px >> k, 1}};
-        layers_to(commands, cube->image, k, 6, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
-                  VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
         vkCmdCopyImageToBuffer(commands, cube->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
                                to->buffer, 1, &region);
     }
