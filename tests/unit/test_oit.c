@@ -300,6 +300,28 @@ static void order_changes_little_where_depths_are_close(void** state)
     }
 }
 
+/* One root of the polynomial of four moments is far off here, and the other lost its digits to it. */
+static void order_changes_little_where_a_root_is_far_off(void** state)
+{
+    static const float z[4] = {1.01402318f, 1.01401937f, 1.62059438f, 0.864019692f};
+    static const float alpha[4] = {0.794286668f, 0.632009625f, 0.876359642f, 0.360421687f};
+    static const float light[4] = {0.687715769f, 0.149993211f, 0.584428906f, 0.311914563f};
+    static const int order[4] = {2, 0, 3, 1};
+    hdrp_oit_fragment f[4], turned[4];
+    (void)state;
+    for (int i = 0; i < 4; ++i) {
+        f[i] = hdrp_oit_fragment_make(hdrp_v3_splat(light[i]), v3(0, 0, 0), alpha[i], z[i]);
+    }
+    for (int i = 0; i < 4; ++i) {
+        turned[i] = f[order[i]];
+    }
+    for (uint32_t m = HDRP_OIT_MODE_MOMENTS_6; m <= HDRP_OIT_MODE_MOMENTS_4; ++m) {
+        assert_color(color_of(turned, 4, v3(1, 1, 1), (hdrp_oit_mode)m, HDRP_OIT_PRECISION_FLOAT),
+                     color_of(f, 4, v3(1, 1, 1), (hdrp_oit_mode)m, HDRP_OIT_PRECISION_FLOAT),
+                     0.001);
+    }
+}
+
 static hdrp_oit_fragment without_emission(hdrp_oit_fragment f)
 {
     f.emission = v3(0, 0, 0);
@@ -879,6 +901,7 @@ int main(void)
         cmocka_unit_test(what_is_not_there_has_no_influence),
         cmocka_unit_test(order_changes_no_more_than_rounding),
         cmocka_unit_test(order_changes_little_where_depths_are_close),
+        cmocka_unit_test(order_changes_little_where_a_root_is_far_off),
         cmocka_unit_test(two_layers_are_exact_in_the_better_modes),
         cmocka_unit_test(layers_at_one_depth_share),
         cmocka_unit_test(many_layers_at_one_depth_stay_visible),

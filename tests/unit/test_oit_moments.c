@@ -204,6 +204,40 @@ static void six_moments_solve_the_moment_problem(void** state)
     assert_true(largest <= 4e-5 && mean <= 2e-7);
 }
 
+/* One root is so far off that the other, near the last layer, would be a difference of two numbers
+ * much larger than it. */
+static void a_root_that_is_far_off_leaves_the_other_its_digits(void** state)
+{
+    static const float at[3] = {-0.656827569f, -0.00118151773f, -0.453386635f};
+    static const float alpha[3] = {0.838678434f, 0.72331702f, 0.120856501f};
+    double power[POWERS] = {0}, b[POWERS], before, most;
+    hdrp_oit_fragment f[3];
+    hdrp_oit_place place[3];
+    hdrp_oit_moments sums;
+    (void)state;
+    memset(&sums, 0, sizeof sums);
+    memset(place, 0, sizeof place);
+    for (int i = 0; i < 3; ++i) {
+        f[i] = hdrp_oit_fragment_make(hdrp_v3_splat(0.0f), hdrp_v3_splat(0.0f), alpha[i], 1.0f);
+        place[i].unit = 0.5f + 0.5f * at[i];
+        place[i].behind = 1.0f;
+        hdrp_oit_moments own = hdrp_oit_moments_insert(f[i], place[i]);
+        add(&sums.power, own.power);
+        add(&sums.high, own.high);
+        for (int k = 0; k < POWERS; ++k) {
+            power[k] -= log1p(-(double)alpha[i]) * pow((double)at[i], k);
+        }
+    }
+    for (int k = 0; k < POWERS; ++k) {
+        b[k] = power[k] / power[0];
+        b[k] += (even[0][k] - b[k]) * bias[0];
+    }
+    share_before(b, 2, (double)at[2], &before, &most);
+    double through = seen_through(power[0] * before, power[0] * most, -log1p(-(double)alpha[2]));
+    float got = hdrp_oit_moments_transmittance(sums, f[2], place[2], 4u);
+    assert_true(fabs((double)got - through) <= 1e-3);
+}
+
 static void the_nearest_is_seen_whole(void** state)
 {
     (void)state;
@@ -217,6 +251,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(four_moments_solve_the_moment_problem),
         cmocka_unit_test(six_moments_solve_the_moment_problem),
+        cmocka_unit_test(a_root_that_is_far_off_leaves_the_other_its_digits),
         cmocka_unit_test(the_nearest_is_seen_whole),
     };
     return cmocka_run_group_tests_name("oit moments", tests, NULL, NULL);

@@ -48,6 +48,12 @@ static void light_is_limited_to_a_half_float_and_products_to_a_32nd(void** state
     /* The colour of the fragment stays, as the weight goes down with it. */
     assert_true(fabsf(t.accum.x / t.accum.w - 65504.0f) <= 0.01f);
     assert_true(32.0f * 2047.0f <= 65504.0f);
+    /* And what covers without a colour. */
+    for (int i = 1; i <= 2; ++i) {
+        hdrp_oit_fragment dark = hdrp_oit_fragment_make(black(), black(), 0.5f * (float)i, 1.0f);
+        float covers = hdrp_oit_weighted_export(dark, 3000.0f, 1.0f).accum.w;
+        assert_true(fabsf(covers - (i == 1 ? 1500.0f : 2047.0f)) <= 1e-3f);
+    }
 }
 
 /* ---- the talk -------------------------------------------------------------------------------- */
