@@ -649,9 +649,10 @@ HDRP_FN float hdrp_i_oit_perhaps_through(float x, float chance)
     return 1.0f - chance * (1.0f - hdrp_i_oit_through(x));
 }
 
-/* What is seen through the nearest fragment and thinner ones before it. At its depth the others are
- * thinner ones, which are before it, or share the depth, of which each is before it half of the
- * time: three quarters are between. */
+/* What is seen through the nearest fragment and thinner ones before it, whose sum is front. Of a
+ * fragment at the nearest depth the others of that sum are thinner ones, which are before it, or
+ * share its depth, and are before it half of the time. Which they are is not known: three quarters
+ * of the time. */
 HDRP_FN float hdrp_i_oit_front(float front, float own, hdrp_oit_place p)
 {
     /* A half float of the sum may be 2^-11 more than what the fragment itself absorbs. */
@@ -703,7 +704,7 @@ HDRP_FN hdrp_v3 hdrp_oit_layer_composite(hdrp_oit_targets t, hdrp_v3 behind, flo
 
 /* What a fragment shader writes, and what the pixel then holds. */
 struct hdrp_oit_front_targets {
-    hdrp_v4 front; /* the nearest fragment and emission before it, w its alpha: added */
+    hdrp_v4 front; /* the nearest fragment and what is before it, w its alpha: added */
     hdrp_v4 accum; /* the others, as in hdrp_oit_targets */
     hdrp_v4 light;
 };
@@ -773,7 +774,7 @@ struct hdrp_oit_wavelet {
     hdrp_v4 coarse; /* x all, y first half, z first quarter, w third quarter */
     hdrp_v4 eighths;
     hdrp_v4 finest_low, finest_high; /* every second sixteenth of the first and the second half */
-    float front;                     /* the nearest fragment, in none of the others */
+    float front; /* the nearest fragment and thinner ones before it, in none of the others */
 };
 HDRP_TYPEDEF(hdrp_oit_wavelet)
 
@@ -859,12 +860,13 @@ HDRP_FN float hdrp_oit_wavelet_transmittance(hdrp_oit_wavelet w, hdrp_oit_fragme
 
 /* >>moments
  * What is absorbed up to a depth, from power moments of it: the least that any distribution with
- * these moments allows, and half of what it then has at that depth, without the fragment's own. */
+ * these moments allows, and what it then has at that depth half of the time. */
 
 /* Additive targets. Four moments need power and high.zw, six all of it; 32-bit floats. */
 struct hdrp_oit_moments {
     hdrp_v4 power; /* first to fourth moment times what is absorbed */
-    hdrp_v4 high;  /* x fifth, y sixth, z what is absorbed, w the nearest fragment, in no other */
+    hdrp_v4 high;  /* x fifth, y sixth, z what is absorbed; w the nearest fragment and thinner
+        ones before it, in none of the others */
 };
 HDRP_TYPEDEF(hdrp_oit_moments)
 

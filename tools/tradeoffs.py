@@ -514,7 +514,11 @@ def transparency(data):
     tables = {name: table(heads + titles, oit_lines(data, cases, precision),
                           "lrr" + "r" * len(cases))
               for name, (titles, cases, precision) in OIT_TABLES.items()}
-    return TRANSPARENCY.format(steps=oit_steps_table(data), pictures=oit_pictures(data),
+    leaks = {row["mode"]: float(row["largest"]) for row in data.oit
+             if row["case"] == "front_99" and row["precision"] == "native"}
+    least = max(leak for mode, leak in leaks.items() if mode in OIT_SEVERAL_PASSES)
+    return TRANSPARENCY.format(leak=f"{leaks['recommended']:.2g}", least_leak=f"{least:.1g}",
+                               steps=oit_steps_table(data), pictures=oit_pictures(data),
                                costs=oit_costs(data), times=oit_times(data), gpu=GPU, **tables)
 
 
@@ -593,6 +597,8 @@ def oit_pictures(data):
     return table(["", *(title for title, _, _ in OIT_SCENES)], lines, "l" + "r" * len(OIT_SCENES))
 
 
+OIT_SEVERAL_PASSES = ("front", "wavelet", "moments_6", "moments_4")
+
 # Of each mode: formulas that a fragment calls before the pass of colour and in it, hdrp_oit_...,
 # and the pass that composes.
 OIT_COSTS = {
@@ -641,7 +647,8 @@ them cover nothing and emit their colour times such an opacity; and behind a nea
 
 {opacities}
 - `recommended` is what one pass can do with two RGBA16F targets. Its weight was fitted on depths of
-  1 to 200 m, thin layers among dense ones included (tools/fit_oit.py).
+  1 to 200 m, thin layers among dense ones included (tools/fit_oit.py). What a layer of 0.99 hides is
+  {leak} off in the worst pixel; in modes of several passes at most {least_leak}.
 - `front` keeps the nearest layer apart, whose depth a pass before it wrote: that of a tenth or more,
   so that the soft edge of a sprite is no front. The other modes of several passes do so, too.
 - `wavelet` and `moments` know how much of each layer is seen, and so of emission. They draw three
