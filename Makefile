@@ -33,7 +33,7 @@ test: ## run the whole test suite; installs what is missing
 	@$(call ctest,test)
 
 # The other builds leave out the tests that call compilers themselves: they would only repeat.
-check-all: test ## the test suite, then sanitizers, clang, every language standard everywhere
+check-all: test ## the test suite, then sanitizers, clang, every standard and GPU everywhere
 	@$(call configure,sanitize,-DCMAKE_BUILD_TYPE=RelWithDebInfo -DHDRP_SANITIZE=ON \
 	    -DHDRP_TEST_COMPILERS=OFF)
 	@$(call compile,sanitize)
@@ -43,7 +43,7 @@ check-all: test ## the test suite, then sanitizers, clang, every language standa
 	@$(call compile,clang)
 	@$(call ctest,clang)
 	@$(call configure,full,-DHDRP_FULL_MATRIX=ON -DHDRP_BUILD_EXAMPLES=OFF)
-	@$(call ctest,full) -L compile
+	@$(call ctest,full) -L "compile|gcn"
 
 exhaustive: ## every float and every code through every codec and function of one float; half an hour
 	@mkdir -p build

@@ -360,7 +360,7 @@ def check_keywords(tree):
 
 def first_section_lines(header, name):
     """Line numbers of a section of hdrp_math.h, the only header that has a language layer."""
-    starts = header.sections() + [(len(header.text), "")]
+    starts = header.sections + [(len(header.text), "")]
     for (start, section), (end, _) in zip(starts, starts[1:]):
         if section == name and header.name == "hdrp_math.h":
             return range(header.line_of(start), header.line_of(end - 1) + 1)

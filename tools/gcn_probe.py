@@ -2,7 +2,8 @@
 """What formulas and the Lit model cost on AMD GPUs, without one:
 
     gcn_probe.py [FUNCTION...]             a table for each family of GPUs
-    gcn_probe.py --check [FUNCTION...]     fails where the recorded numbers are no longer right
+    gcn_probe.py --check [FUNCTION...]     fails where the recorded numbers are no longer right,
+                                           with --family only those of it
     gcn_probe.py --write                   records them
     gcn_probe.py --features [VARIANT...]   fails where a feature that is off costs something
     gcn_probe.py --show SHADER             machine code of a FUNCTION, or KIND:VARIANT of Lit
@@ -444,7 +445,10 @@ def check(bench, results, names):
         raise Skip(f"{path.name} is for {recorded[0].lstrip('# ')}; this is {versions}")
     measured = document(versions, all_rows(bench, names)).splitlines()
     old, new = (dict(keyed(line) for line in lines) for lines in (recorded, measured))
-    if names:  # the rest has not been measured
+    # The rest has not been measured.
+    old = {key: line for key, line in old.items()
+           if key[0] == "#" or key[2] in ("family", *bench.families)}
+    if names:
         old = {key: line for key, line in old.items() if key in new or key[1] in names}
     keys = [key for key in [*old, *(key for key in new if key not in old)]
             if old.get(key) != new.get(key)]

@@ -5,6 +5,7 @@ Every tool that needs to know the API asks this module, so the headers are parse
 It understands the house style (see CONTRIBUTING.md), not C in general: a public name begins a
 declaration at the first column, and the preprocessor guards are the ones every header has.
 """
+import functools
 import math
 import pathlib
 import re
@@ -449,11 +450,12 @@ class Header:
         match = re.match(r"/\*.*?\*/", self.text, re.S)
         return match[0] if match else ""
 
+    @functools.cached_property
     def sections(self):
         return [(m.start(), m["name"].strip()) for m in SECTION.finditer(self.text)]
 
     def section_of(self, offset):
-        return next((name for start, name in reversed(self.sections()) if start < offset), "")
+        return next((name for start, name in reversed(self.sections) if start < offset), "")
 
     def layers(self):
         """For each line: 'formula', 'algorithm' or 'implementation', and 'directive' lines."""

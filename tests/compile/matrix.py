@@ -50,6 +50,8 @@ ONE_STANDARD = {"c": "c99", "cxx": "c++11"}
 DRIVER = {("gcc", "c"): "gcc", ("gcc", "cxx"): "g++",
           ("clang", "c"): "clang", ("clang", "cxx"): "clang++"}
 SUFFIX = {"c": "c", "cxx": "cpp"}
+# Keeps every function, so that warnings which need the flow of data look at all of them.
+OPTIMISED = ["-O2", "-fkeep-inline-functions", "-DHDRP_FN=static inline", "-c", "-o", "/dev/null"]
 IMPLEMENTATION = re.compile(r"\bHDRP_[A-Z0-9_]+_IMPLEMENTATION\b")
 SYSTEM = "".join(f"#include <{name}.h>\n"
                  for name in ("math", "stddef", "stdint", "stdio", "stdlib", "string"))
@@ -122,6 +124,12 @@ class Matrix:
                     for a in self.headers for b in self.headers if a != b}
         return {"all-forwards": self.headers, "all-backwards": self.headers[::-1]}
 
+    def orders_of_optimising(self):
+        """name -> headers, so that each function of them is compiled once, or with each header."""
+        if self.full:
+            return {header.stem: [header] for header in self.headers}
+        return {"all": self.headers}
+
     def standards(self, language):
         if self.full:
             return ALL_STANDARDS[language]
@@ -176,12 +184,10 @@ class Matrix:
                          for standard in standards]
             if not self.brief and not is_part:
                 few.update(self.contexts(header))
-                if compiler == "gcc" and (language == "c" or self.full):
-                    jobs.append(self.host_job(
-                        compiler, language, ONE_STANDARD[language], f"{header.stem}-optimised",
-                        self.define(header) + f'#include "{header.name}"\n',
-                        ["-O2", "-fkeep-inline-functions", "-DHDRP_FN=static inline", "-c", "-o",
-                         "/dev/null"]))
+        if compiler == "gcc" and not self.brief and (language == "c" or self.full):
+            jobs += [self.host_job(compiler, language, ONE_STANDARD[language], f"{name}-optimised",
+                                   self.order_text(headers), OPTIMISED)
+                     for name, headers in self.orders_of_optimising().items()]
         few.update({name: self.order_text(headers) for name, headers in self.orders.items()})
         return jobs + [self.host_job(compiler, language, standard, name, text)
                        for name, text in few.items() for standard in self.few_standards(language)]
