@@ -22,10 +22,11 @@
  *
  * Emission is what a surface adds whatever its alpha: fire, sparks, glow. It goes into sums of its
  * own, so that pixels where nothing covers anything are exact in every mode but that of the talk,
- * and so is one layer that covers and emits, however thin. What shines in proportion to its alpha
- * is a part of its colour. Colours are as they will be shown, exposed; scale is a power of 2 that
- * brings them near 1 where they are not, and products with weights stay below 65504 / 32 whatever
- * they are: 32 fragments never overflow a half float.
+ * and so is one layer that covers and emits, however thin; published weights lose the colour of one
+ * that covers less than 2^-9. What shines in proportion to its alpha is a part of its colour.
+ * Colours are as they will be shown, exposed; scale is a power of 2 that brings them near 1 where
+ * they are not, and products with weights stay below 65504 / 32 whatever they are: 32 fragments
+ * never overflow a half float.
  *
  * Which mode: tests/oit/recorded.csv holds the error of each against sorting, docs/tradeoffs.md
  * shows them. A fragment that is not there (alpha 0, no emission) has no influence on any.

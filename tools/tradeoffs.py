@@ -668,8 +668,9 @@ Where half of the layers emit up to a colour beside what they cover with, by opa
 
 {shining}
 - One layer is exact in every mode but `talk`, whatever it covers and emits: what is divided by its
-  own coverage, or seen through it, is so without error. A share of emission that grows with opacity
-  goes with the colour, the rest with what only adds.
+  own coverage, or seen through it, is so without error, but for published weights below an opacity
+  of 2^-9. In `recommended` a share of emission that grows with opacity goes with the colour, the
+  rest with what only adds.
 - A pane far before a group leaves all of it to two of the 16 intervals of `wavelet`. Moments have
   no intervals, and few digits for what is close together.
 
