@@ -766,9 +766,8 @@ HDRP_FN hdrp_v3 hdrp_oit_front_composite(hdrp_oit_front_targets t, hdrp_v3 behin
  * What is absorbed up to a depth, in Haar wavelets of four levels, written as sums of the left
  * halves: no coefficient is negative, and half floats suffice. */
 
-#define HDRP_OIT_WAVELET_BINS 16u
-#define HDRP_OIT_WAVELET_SPAN                                                                      \
-    15.5f /* of them: the farthest fragment is in the middle of the last */
+/* Of 16 intervals: the farthest fragment is in the middle of the last. */
+#define HDRP_OIT_WAVELET_SPAN 15.5f
 
 /* Additive targets: four RGBA16F and an R16F. */
 struct hdrp_oit_wavelet {
@@ -836,7 +835,8 @@ HDRP_FN hdrp_v2 hdrp_i_oit_descend(hdrp_v2 s, float left, hdrp_u32 right)
  *  f        valid
  *  place    valid
  *  returns  [0,1]
- *  edges    1 for the nearest fragment; NaN counts as nothing that absorbs
+ *  edges    1 for the nearest fragment, alone at its depth and without thinner ones before it; NaN
+ *           counts as nothing that absorbs
  *  error    <= 6e-7 absolute against sums per interval in double  @accuracy oit_wavelet
  *  source   Aizenshtein et al. 2022, "Wavelet Transparency": Haar, rank 3, linear within the finest
  *           intervals, without what the fragment itself absorbs */
@@ -1016,7 +1016,8 @@ HDRP_FN float hdrp_i_oit_biased(float sum, float inverse, float even, float bias
  *  place    valid
  *  count    any    4 or 6 moments; below 6 counts as 4
  *  returns  [0,1]
- *  edges    1 for the nearest fragment; NaN counts as nothing that absorbs
+ *  edges    1 for the nearest fragment, alone at its depth and without thinner ones before it; NaN
+ *           counts as nothing that absorbs
  *  error    none: an estimate; tests/oit measures pixels against sorting
  *  source   Muenstermann et al. 2018, "Moment-Based Order-Independent Transparency", algorithms for
  *           four and six power moments with the bias of 32-bit floats
